@@ -13,7 +13,7 @@ constexpr std::uint64_t kFirstRelayedId = std::uint64_t{1} << 48;
 
 }  // namespace
 
-Audience::Audience(std::unique_ptr<Endpoint> link) : link_(std::move(link)), next_relayed_id_(kFirstRelayedId) {}
+Audience::Audience(std::unique_ptr<Endpoint> link) : link_(std::move(link)), relay_(kFirstRelayedId) {}
 
 Audience::~Audience() = default;
 
@@ -57,7 +57,7 @@ void Audience::leave(const PeerLeft& left) {
 void Audience::receive(PeerId peer, const Message& message) {
   if (const auto* feedback = std::get_if<Feedback>(&message)) {
     if (peer != primary_) return;
-    if (feedback->command_id >= kFirstRelayedId) {
+    if (relay_.owns(feedback->command_id)) {
       relay_feedback(*feedback);
     } else {
       heard_.feedback.push_back(*feedback);
@@ -80,28 +80,12 @@ void Audience::relay_order(PeerId director, const Command& command) {
     link_->send(director, refused);
     return;
   }
-  Command relayed = command;
-  relayed.id = next_relayed_id_++;
-  // `after` and `stop` name the director's own commands.
-  const auto renumber = [&](std::vector<std::uint64_t>& ids) {
-    for (std::uint64_t& id : ids) {
-      for (const auto& [ours, theirs] : relayed_) {
-        if (theirs.director == director && theirs.id == id) id = ours;
-      }
-    }
-  };
-  renumber(relayed.after);
-  if (auto* stop = std::get_if<Stop>(&relayed.action)) renumber(stop->commands);
-  relayed_[relayed.id] = {director, command.id};
-  order(relayed);
+  order(relay_.forward(director, command));
 }
 
 void Audience::relay_feedback(const Feedback& feedback) {
-  const auto found = relayed_.find(feedback.command_id);
-  if (found == relayed_.end()) return;
-  Feedback answer = feedback;
-  answer.command_id = found->second.id;
-  if (peers_.count(found->second.director) != 0) link_->send(found->second.director, answer);
+  const auto answer = relay_.answer(feedback);
+  if (answer && peers_.count(answer->director) != 0) link_->send(answer->director, answer->feedback);
 }
 
 void Audience::broadcast(const Message& message) {

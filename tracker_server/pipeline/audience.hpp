@@ -10,6 +10,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "protocol/session/command_relay.hpp"
 #include "protocol/transport/endpoint.hpp"
 #include "tracker_server/camera/camera.hpp"
 
@@ -51,18 +52,12 @@ class Audience {
   void relay_order(PeerId director, const Command& command);
   void relay_feedback(const Feedback& feedback);
 
-  struct Relayed {
-    PeerId director = 0;
-    std::uint64_t id = 0;  // the director's own
-  };
-
   std::unique_ptr<Endpoint> link_;
   std::map<PeerId, Role> peers_;
   std::optional<PeerId> primary_;
   std::optional<FrameId> composited_;
   std::map<MessageType, Message> snapshots_;
-  std::map<std::uint64_t, Relayed> relayed_;
-  std::uint64_t next_relayed_id_;
+  CommandRelay relay_;
   Heard heard_;
 };
 
