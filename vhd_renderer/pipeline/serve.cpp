@@ -13,7 +13,7 @@
 #include "protocol/daemon/step_times.hpp"
 #include "protocol/daemon/stop_signal.hpp"
 #include "protocol/vocabulary/pose_eigen.hpp"
-#include "vhd_renderer/body/cast.hpp"
+#include "vhd_renderer/body/build_character.hpp"
 #include "vhd_renderer/motion/director.hpp"
 #include "vhd_renderer/output/output.hpp"
 #include "vhd_renderer/pipeline/director_port.hpp"
@@ -230,7 +230,7 @@ Result<std::unique_ptr<Endpoint>> open_director_port(const RendererOptions& opti
 }  // namespace
 
 Result<void> serve(const RendererOptions& options) {
-  auto figure = load_cast(options.character);
+  auto figure = figure_of(options.character);
   if (!figure) return tl::make_unexpected(figure.error());
   auto port = open_director_port(options);
   if (!port) return tl::make_unexpected(port.error());
