@@ -91,7 +91,14 @@ Result<void> Server::run() {
     if (observation.pose.status == TrackStatus::ok || observation.pose.status == TrackStatus::relocalised) ++frames_ok_;
   }
   audience_.say_goodbye("the camera has ended");
-  return write_report();
+  if (auto reported = write_report(); !reported) return reported;
+  if (frames_ > 0 && frames_ok_ == 0 && !stop_requested()) {
+    return failure(ErrorCode::not_found,
+                   "no board of " + std::to_string(options_.observe.board.squares) + " squares a side was found in " +
+                       std::to_string(frames_) +
+                       " frames; is all of it in the picture? --squares and --init corners=... help");
+  }
+  return {};
 }
 
 void Server::wait_for_renderer() {
