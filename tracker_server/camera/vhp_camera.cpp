@@ -4,10 +4,9 @@
 #include <string>
 #include <utility>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "protocol/daemon/stop_signal.hpp"
 #include "protocol/transport/endpoint.hpp"
+#include "protocol/transport/jpeg.hpp"
 
 namespace counterpart {
 namespace {
@@ -15,22 +14,9 @@ namespace {
 constexpr std::int64_t kLookNs = 100'000'000;  // how often a waiting camera looks for Ctrl-C
 
 Result<cv::Mat> to_picture(const VideoFrame& video) {
-  if (video.codec == PixelCodec::jpeg) {
-    cv::Mat picture = cv::imdecode(video.bytes, cv::IMREAD_COLOR);
-    if (picture.empty()) return failure(ErrorCode::bad_format, "the camera sent a JPEG that cannot be decoded");
-    return picture;
-  }
-  const std::size_t row_bytes = std::size_t{video.width} * 3;
-  if (video.stride < row_bytes || video.width == 0 || video.height == 0 ||
-      video.bytes.size() < std::size_t{video.stride} * (video.height - 1u) + row_bytes) {
-    return failure(ErrorCode::bad_format, "the camera sent a raw frame that is shorter than its own size says");
-  }
-  cv::Mat picture(video.height, video.width, CV_8UC3);
-  for (int y = 0; y < picture.rows; ++y) {
-    const auto* row = video.bytes.data() + std::size_t{video.stride} * static_cast<std::size_t>(y);
-    std::copy(row, row + row_bytes, picture.ptr(y));
-  }
-  return picture;
+  auto raw = convert(video, PixelCodec::raw_bgr8);
+  if (!raw) return tl::make_unexpected(raw.error());
+  return cv::Mat(raw->height, raw->width, CV_8UC3, raw->bytes.data(), raw->stride).clone();
 }
 
 class VhpCamera final : public Camera {

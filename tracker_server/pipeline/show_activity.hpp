@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "game_controller/choreographer/show.hpp"
+#include "game_controller/game/show.hpp"
 #include "game_controller/game/game.hpp"
 #include "tracker_server/pipeline/observe.hpp"
 

@@ -12,6 +12,7 @@
 
 #include "protocol/daemon/step_times.hpp"
 #include "protocol/daemon/stop_signal.hpp"
+#include "protocol/transport/jpeg.hpp"
 #include "protocol/vocabulary/pose_eigen.hpp"
 #include "vhd_renderer/body/build_character.hpp"
 #include "vhd_renderer/motion/director.hpp"
@@ -138,6 +139,11 @@ void RendererDaemon::receive(Message&& message) {
 // One frame of the mirror: the steps of docs/architecture.md.
 Result<void> RendererDaemon::show(PairedFrame pair) {
   const StepTimer whole(times_, "frame");
+  if (pair.video.codec != PixelCodec::raw_bgr8) {
+    auto raw = convert(pair.video, PixelCodec::raw_bgr8);
+    if (!raw) return tl::make_unexpected(raw.error());
+    pair.video = std::move(*raw);
+  }
   const cv::Mat camera(pair.video.height, pair.video.width, CV_8UC3, pair.video.bytes.data(), pair.video.stride);
   const Performance performance = direct(pair);
   cv::Mat mirror = camera;

@@ -1,4 +1,4 @@
-#include "game_controller/choreographer/show.hpp"
+#include "game_controller/game/show.hpp"
 
 #include <cmath>
 #include <set>
