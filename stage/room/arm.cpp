@@ -94,8 +94,8 @@ std::vector<Capsule> hand_capsules(float piece_radius_m) {
 }
 
 MeshData sleeve_mesh(float length_m, float radius_near_m, float radius_far_m) {
-  constexpr int kRings = 28;
-  constexpr int kSegments = 28;
+  constexpr int kRings = 22;
+  constexpr int kSegments = 22;
   constexpr float kTwoPi = 6.2831853f;
   MeshData mesh;
   const auto radius = [&](float t, float angle) {

@@ -34,6 +34,13 @@ MeshData piece_mesh(const BoardGeometry& board) {
   return lathe_mesh(profile, 32);
 }
 
+// The four upright sides of a box: its top and bottom are not seen.
+MeshData skirt_mesh(const Eigen::Vector3f& size_m) {
+  MeshData mesh = box_mesh(size_m);
+  mesh.triangles.resize(4 * 6);
+  return mesh;
+}
+
 }  // namespace
 
 struct Room::State {
@@ -113,11 +120,11 @@ Result<void> Room::State::build() {
   MeshData wall_mesh = plane_mesh(7.f, 2.6f, 14, 6);
   const std::vector<Piece> furniture{
       {board_mesh, surfaces[0], grain, at(0, 0, 0), false, 0.10f, 40, {1, 1, 1}},
-      {box_mesh({side, side, thickness}), SurfaceId::lit, grain, at(0, 0, -thickness / 2 - 0.0002f), true, 0.1f, 30,
+      {skirt_mesh({side, side, thickness}), SurfaceId::lit, grain, at(0, 0, -thickness / 2 - 0.0002f), true, 0.1f, 30,
        {0.13f, 0.06f, 0.03f}},
       {plane_mesh(kTableX_m, table_y, 26, 20), surfaces[1], oak, at(0, table_middle, -thickness), false, 0.10f, 28,
        {1, 1, 1}},
-      {box_mesh({kTableX_m, table_y, kTableThickness_m}), SurfaceId::lit, oak,
+      {skirt_mesh({kTableX_m, table_y, kTableThickness_m}), SurfaceId::lit, oak,
        at(0, table_middle, -thickness - kTableThickness_m / 2 - 0.0005f), false, 0.05f, 20, {0.8f, 0.75f, 0.7f}},
       {plane_mesh(7.f, 5.f, 28, 20), surfaces[2], parquet, at(0, kWallY_m + 2.5f, kFloorZ_m), false, 0, 1, {1, 1, 1}},
       {wall_mesh, surfaces[3], wall,
@@ -149,7 +156,7 @@ Result<void> Room::State::build() {
   const auto radius = static_cast<float>(board.piece_radius_m);
   const Eigen::Vector3f shirt(0.09f, 0.15f, 0.26f);
   Result<void> made = movable(pieces, piece_mesh(board), surfaces[4], grain, {0.085f, 0.032f, 0.016f}, 0.22f, 36);
-  if (made) made = movable(hand, blended(hand_capsules(radius), 0.010f, 0.0032f), surfaces[5], TextureId::white,
+  if (made) made = movable(hand, blended(hand_capsules(radius), 0.010f, 0.0048f), surfaces[5], TextureId::white,
                            {0.62f, 0.36f, 0.26f}, 0.10f, 14);
   if (made) made = movable(forearm, sleeve_mesh(static_cast<float>(kForearm_m) - 0.02f, 0.056f, 0.038f), SurfaceId::lit,
                            cloth, shirt, 0.01f, 8);
@@ -173,7 +180,7 @@ Lighting Room::State::lighting() const {
 }
 
 std::vector<DrawItem> Room::State::items(const World& world) const {
-  std::vector<DrawItem> items = still;
+  std::vector<DrawItem> items;  // near things first
   DrawItem standing = pieces;
   standing.X_BO.clear();
   for (const RealPiece& piece : world.pieces) {
@@ -185,7 +192,6 @@ std::vector<DrawItem> Room::State::items(const World& world) const {
                               X_BO);
     }
   }
-  items.push_back(standing);
   if (world.player_present) {
     const ArmPose pose = arm_for(world.hand.pinch_B);
     for (const auto& [item, X] : {std::pair{&hand, &pose.X_BHand}, {&forearm, &pose.X_BForearm},
@@ -194,6 +200,8 @@ std::vector<DrawItem> Room::State::items(const World& world) const {
       items.back().X_BO = {Eigen::Affine3f(X->cast<float>())};
     }
   }
+  items.push_back(standing);
+  items.insert(items.end(), still.begin(), still.end());
   return items;
 }
 
@@ -208,7 +216,7 @@ cv::Mat Room::arm_mask(const World& world, const View& view) {
   std::vector<DrawItem> items = state_->items(world);
   const std::size_t arm_parts = world.player_present ? 3 : 0;
   for (std::size_t i = 0; i < items.size(); ++i) {
-    const bool arm = i + arm_parts >= items.size();
+    const bool arm = i < arm_parts;
     items[i].material.surface = arm ? SurfaceId::unlit : SurfaceId::catcher;
     items[i].casts_shadow = false;
   }

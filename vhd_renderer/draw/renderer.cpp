@@ -304,23 +304,21 @@ void Renderer::State::draw_picture(const View& view, const Lighting& lighting, c
   glActiveTexture(GL_TEXTURE0 + kShadowUnit);
   glBindTexture(GL_TEXTURE_2D, shadow_map.id());
   glActiveTexture(GL_TEXTURE0 + kImageUnit);
-  for (std::size_t surface = 0; surface < programs.size(); ++surface) {
-    const DrawProgram& program = programs[surface];
-    bool in_use = false;
-    for (const DrawItem& item : items) {
-      if (static_cast<std::size_t>(item.material.surface) != surface || !item.visible || item.X_BO.empty()) continue;
-      if (!in_use) use(program, view, lighting, from_B, radius_m);
-      in_use = true;
-      if (item.material.double_sided) {
-        glDisable(GL_CULL_FACE);
-      } else {
-        glEnable(GL_CULL_FACE);
-      }
-      glUniform3fv(program.colour, 1, item.material.colour.data());
-      glUniform2f(program.highlight, item.material.gloss, item.material.polish);
-      glBindTexture(GL_TEXTURE_2D, textures.at(static_cast<std::size_t>(item.material.texture)).id());
-      draw_instances(item);
+  const DrawProgram* in_use = nullptr;
+  for (const DrawItem& item : items) {
+    if (!item.visible || item.X_BO.empty()) continue;
+    const DrawProgram& program = programs.at(static_cast<std::size_t>(item.material.surface));
+    if (in_use != &program) use(program, view, lighting, from_B, radius_m);
+    in_use = &program;
+    if (item.material.double_sided) {
+      glDisable(GL_CULL_FACE);
+    } else {
+      glEnable(GL_CULL_FACE);
     }
+    glUniform3fv(program.colour, 1, item.material.colour.data());
+    glUniform2f(program.highlight, item.material.gloss, item.material.polish);
+    glBindTexture(GL_TEXTURE_2D, textures.at(static_cast<std::size_t>(item.material.texture)).id());
+    draw_instances(item);
   }
 }
 

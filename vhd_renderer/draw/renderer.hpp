@@ -94,6 +94,7 @@ class Renderer {
   [[nodiscard]] Result<SurfaceId> add_surface(const std::string& glsl, bool lit = true);
   void set_parameters(SurfaceId surface, const Eigen::Vector4f& parameters);
 
+  // In the order given: near things first spare the work on what they hide.
   Drawing draw(const View& view, const Lighting& lighting, std::span<const DrawItem> items,
                const DrawOptions& options = {});
 

@@ -88,8 +88,7 @@ layout(location = 0) out vec4 drawn;
 float in_light() {
   vec3 q = vec3(p_S.xy, p_S.z - shadow_edge.y);
   float e = shadow_edge.x;
-  return 0.25 * (texture(shadow_map, q + vec3(-e, -0.4 * e, 0.0)) + texture(shadow_map, q + vec3(0.4 * e, -e, 0.0)) +
-                 texture(shadow_map, q + vec3(e, 0.4 * e, 0.0)) + texture(shadow_map, q + vec3(-0.4 * e, e, 0.0)));
+  return 0.5 * (texture(shadow_map, q + vec3(-e, -0.5 * e, 0.0)) + texture(shadow_map, q + vec3(e, 0.5 * e, 0.0)));
 }
 
 vec3 ambient(vec3 n) { return mix(ambient_down, ambient_up, n.z * 0.5 + 0.5); }
