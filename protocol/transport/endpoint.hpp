@@ -23,7 +23,8 @@ struct PeerJoined {
   PeerId peer = 0;
   Role role = Role::observer;
   std::string software;
-  bool resumed = false;  // the same session after a lost link: nothing kept was lost. false: a fresh process
+  bool resumed = false;   // the same session after a lost link: nothing kept was lost. false: a fresh process
+  bool lockstep = false;  // both sides asked for it
 };
 
 struct PeerLeft {
