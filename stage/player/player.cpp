@@ -10,8 +10,8 @@ namespace counterpart::stage {
 namespace {
 
 constexpr double kReach_s = 0.35;
-constexpr double kReachFar_s_m = 0.7;  // longer for farther pieces
-constexpr double kCarry_s = 0.6;
+constexpr double kFar_s_m = 0.7;  // longer over longer ways
+constexpr double kCarry_s = 0.5;
 constexpr double kWithdraw_s = 0.5;
 constexpr double kFingers_s = 0.08;   // closing or opening them
 constexpr double kPatience_s = 10.0;  // then he believes the mirror more than his memory
@@ -216,7 +216,7 @@ void Player::reach_for(const World& world, int piece) {
   const RealPiece& target = world.pieces[static_cast<std::size_t>(piece)];
   Stroke stroke;
   stroke.to_B = target.p_B + Eigen::Vector3d(0, 0, grip_height_m(world.board));
-  stroke.duration_s = kReach_s + kReachFar_s_m * (stroke.to_B - hand_after_).norm();
+  stroke.duration_s = kReach_s + kFar_s_m * (stroke.to_B - hand_after_).norm();
   stroke.arc_m = 0.05;
   stroke.end = StrokeEnd::take;
   stroke.piece = piece;
@@ -232,7 +232,7 @@ void Player::carry(const World& world, int piece, const std::vector<int>& path) 
     Stroke stroke;
     stroke.foot_B = {centre[0] + random(-off, off), centre[1] + random(-off, off), 0};
     stroke.to_B = stroke.foot_B + Eigen::Vector3d(0, 0, grip_height_m(world.board));
-    stroke.duration_s = i == 1 ? kCarry_s : 0.4;
+    stroke.duration_s = i == 1 ? kCarry_s + kFar_s_m * (stroke.to_B - hand_after_).norm() : 0.4;
     stroke.arc_m = 0.045;
     stroke.piece = piece;
     stroke.square = path[i];
@@ -249,7 +249,7 @@ void Player::take_off(const World& world, int piece) {
   Stroke stroke;
   stroke.foot_B = place_beside_board(world.board, places_used_++);
   stroke.to_B = stroke.foot_B + Eigen::Vector3d(0, 0, grip_height_m(world.board));
-  stroke.duration_s = kCarry_s;
+  stroke.duration_s = kCarry_s + kFar_s_m * (stroke.to_B - hand_after_).norm();
   stroke.arc_m = 0.06;
   stroke.end = StrokeEnd::put_down;
   stroke.piece = piece;
