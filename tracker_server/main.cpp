@@ -14,10 +14,10 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", COUNTERPART_VERSION);
   app.require_subcommand(1);
   int exit_code = 0;
+  counterpart::add_serve(app, exit_code);
   counterpart::add_track(app, exit_code);
   counterpart::add_locate(app, exit_code);
   counterpart::add_calibrate(app, exit_code);
-  // `serve` joins here: counterpart::add_serve(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,7 +1,6 @@
 #include "protocol/codec/crc32c.hpp"
 
-#include <array>
-#include <cstddef>
+#include "protocol/codec/crc_tables.hpp"
 
 #if defined(__x86_64__)
 #include <nmmintrin.h>
@@ -10,27 +9,7 @@
 namespace counterpart {
 namespace {
 
-constexpr std::uint32_t kPolynomial = 0x82F63B78;  // 0x1EDC6F41, bits reversed
-
-using Tables = std::array<std::array<std::uint32_t, 256>, 8>;
-
-constexpr Tables make_tables() {
-  Tables tables{};
-  for (std::uint32_t byte = 0; byte < 256; ++byte) {
-    std::uint32_t crc = byte;
-    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ ((crc & 1) != 0 ? kPolynomial : 0);
-    tables[0][byte] = crc;
-  }
-  for (std::size_t slice = 1; slice < 8; ++slice) {
-    for (std::size_t byte = 0; byte < 256; ++byte) {
-      const std::uint32_t before = tables[slice - 1][byte];
-      tables[slice][byte] = (before >> 8) ^ tables[0][before & 0xFF];
-    }
-  }
-  return tables;
-}
-
-constexpr Tables kTables = make_tables();
+constexpr CrcTables kTables = make_crc_tables(0x82F63B78);  // 0x1EDC6F41, bits reversed
 
 #if defined(__x86_64__)
 __attribute__((target("sse4.2"))) std::uint32_t crc32c_by_hardware(ByteView bytes, std::uint32_t crc) {
@@ -47,16 +26,7 @@ __attribute__((target("sse4.2"))) std::uint32_t crc32c_by_hardware(ByteView byte
 }  // namespace
 
 std::uint32_t crc32c_by_table(ByteView bytes, std::uint32_t crc) {
-  std::uint32_t state = ~crc;
-  const std::uint8_t* at = bytes.data();
-  std::size_t left = bytes.size();
-  for (; left >= 8; at += 8, left -= 8) {
-    const std::uint64_t word = load<std::uint64_t>(at) ^ state;
-    state = 0;
-    for (unsigned byte = 0; byte < 8; ++byte) state ^= kTables[7 - byte][(word >> (8 * byte)) & 0xFF];
-  }
-  for (; left > 0; ++at, --left) state = (state >> 8) ^ kTables[0][(state ^ *at) & 0xFF];
-  return ~state;
+  return crc_by_table(kTables, bytes, crc);
 }
 
 std::uint32_t crc32c(ByteView bytes, std::uint32_t crc) {

@@ -371,6 +371,7 @@ std::vector<PeerStats> Hub::stats(std::int64_t now_ns) const {
     PeerStats stats = peer.counts;
     stats.dropped += peer.main.dropped() + peer.video.dropped();
     stats.queued = peer.main.queued() + peer.video.queued();
+    stats.unacknowledged = peer.main.unacknowledged() + peer.video.unacknowledged();
     const ClockOffset clock = peer.clock.at(now_ns);
     stats.clock_offset_ns = clock.offset_ns;
     stats.clock_bound_ns = clock.bound_ns;

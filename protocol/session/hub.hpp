@@ -32,6 +32,7 @@ class WireTap {
   virtual ~WireTap() = default;
   virtual void saw(bool incoming, bool video_lane, PeerId peer, const HeaderBytes& header, ByteView body,
                    std::int64_t now_ns) = 0;
+  virtual std::optional<Error> take_error() { return std::nullopt; }
 };
 
 class Hub {

@@ -43,6 +43,7 @@ class Lane {
   std::uint64_t last_received() const { return last_received_; }
   bool has_waiting() const { return !waiting_.empty(); }
   std::uint32_t queued() const { return static_cast<std::uint32_t>(waiting_.size()); }
+  std::uint32_t unacknowledged() const { return static_cast<std::uint32_t>(kept_count_); }
   std::uint64_t dropped() const { return dropped_; }
 
   // Kept messages that were not acknowledged yet are too many or too large: the session cannot go on.

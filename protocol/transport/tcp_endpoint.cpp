@@ -5,6 +5,7 @@
 
 #include <boost/asio.hpp>
 
+#include "protocol/capture/recorder.hpp"
 #include "protocol/session/hub.hpp"
 #include "protocol/transport/address.hpp"
 #include "protocol/transport/endpoint.hpp"
@@ -295,6 +296,9 @@ class TcpEndpoint : public Endpoint {
       const std::lock_guard lock(mutex_);
       alarm_set_ = false;
       hub_.tick(now());
+      if (recorder_ != nullptr) {
+        if (const auto error = recorder_->take_error()) hub_.report(0, *error, now());
+      }
       after_change();
     });
   }
@@ -424,7 +428,9 @@ Result<Prepared> prepare(const std::string& address, const LinkOptions& options)
     prepared.token = *token;
   }
   if (!options.record_file.empty()) {
-    return failure(ErrorCode::unsupported, "recording a link is not there yet");
+    auto recorder = Recorder::open(options.record_file, options.role, options.software);
+    if (!recorder) return tl::make_unexpected(recorder.error());
+    prepared.recorder = std::move(*recorder);
   }
   return prepared;
 }

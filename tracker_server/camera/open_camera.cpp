@@ -4,6 +4,7 @@
 #include "tracker_server/camera/capture_camera.hpp"
 #include "tracker_server/camera/newest_wins.hpp"
 #include "tracker_server/camera/picture_folder.hpp"
+#include "tracker_server/camera/vhp_camera.hpp"
 
 namespace counterpart {
 namespace {
@@ -21,8 +22,6 @@ Result<std::unique_ptr<Camera>> open_source(const std::string& uri) {
   if (uri.empty()) return failure(ErrorCode::invalid_argument, std::string("No camera given; ") + kinds + ".");
   if (starts_with_any(uri, {"rtsp://", "rtsps://", "http://", "https://"}))
     return CaptureCamera::open(uri, CaptureKind::stream);
-  if (starts_with_any(uri, {"vhp://"}))
-    return failure(ErrorCode::unsupported, "This program cannot open " + uri + " as a camera.");
   std::error_code error;
   const auto status = std::filesystem::status(uri, error);
   if (std::filesystem::is_directory(status)) return PictureFolder::open(uri);
@@ -34,6 +33,8 @@ Result<std::unique_ptr<Camera>> open_source(const std::string& uri) {
 }  // namespace
 
 Result<std::unique_ptr<Camera>> open_camera(const std::string& uri, Pace pace) {
+  constexpr std::int64_t kPatienceNs = 10'000'000'000;  // a camera host that is just starting gets this long
+  if (starts_with_any(uri, {"vhp://"})) return open_vhp_camera(uri.substr(6), pace, kPatienceNs);
   auto source = open_source(uri);
   if (!source || pace == Pace::lockstep) return source;
   return newest_wins(std::move(*source));

@@ -100,6 +100,10 @@ std::array<Vector2d, 4> LocatedBoard::corners(int n) const {
   return {apply(H, 0, 0), apply(H, n, 0), apply(H, n, n), apply(H, 0, n)};
 }
 
+Vector2d LocatedBoard::to_pixel(double column, double row) const {
+  return apply(H, column, row);
+}
+
 std::optional<LocatedBoard> locate_board(const cv::Mat& picture, int n) {
   const Pyramid full = build_pyramid(picture, 4);
   const cv::Mat1b& grey = full.levels.front();

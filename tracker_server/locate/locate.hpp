@@ -19,6 +19,7 @@ struct LocatedBoard {
 
   // Outer corners of the playing surface, clockwise in the picture, the one nearest to the picture's top left first.
   std::array<Eigen::Vector2d, 4> corners(int n) const;
+  Eigen::Vector2d to_pixel(double column, double row) const;
 };
 
 // n: squares a side. Empty rather than wrong: pictures in which the outline cannot be told are refused.

@@ -22,6 +22,12 @@
 namespace counterpart {
 namespace {
 
+// From decoded picture to pose: everything before the pieces are read.
+double pose_ms(const Observation& observation) {
+  const auto found = observation.step_ms.find("pose");
+  return found == observation.step_ms.end() ? 0 : found->second;
+}
+
 constexpr std::int64_t kWaitNs = 100'000'000;  // how often a waiting daemon looks for Ctrl-C
 
 // One run of the daemon: what its steps share.
@@ -86,11 +92,12 @@ Result<void> Server::run() {
     publish(**frame, observation, outputs);
     if (options_.lockstep) wait_for_composite((**frame).stamp);
     camera_->done((**frame).stamp);
-    poses_.add(**frame, observation, options_.observe.board);
+    poses_.add(observation.pose, observation.intrinsics, options_.observe.board, pose_ms(observation));
     ++frames_;
     if (observation.pose.status == TrackStatus::ok || observation.pose.status == TrackStatus::relocalised) ++frames_ok_;
   }
   audience_.say_goodbye("the camera has ended");
+  if (auto closed = poses_.close(); !closed) return closed;
   if (auto reported = write_report(); !reported) return reported;
   if (frames_ > 0 && frames_ok_ == 0 && !stop_requested()) {
     return failure(ErrorCode::not_found,

@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "game_controller/game/show.hpp"
 #include "game_controller/game/game.hpp"
+#include "game_controller/game/show.hpp"
 #include "tracker_server/pipeline/observe.hpp"
 
 namespace counterpart {

@@ -11,6 +11,8 @@
 
 #include "tracker_server/camera/camera_json.hpp"
 #include "tracker_server/locate/locate.hpp"
+#include "tracker_server/pieces/appearance.hpp"
+#include "tracker_server/pieces/board_view.hpp"
 #include "tracker_server/programs/programs.hpp"
 
 namespace counterpart {
@@ -21,6 +23,17 @@ struct LocateArguments {
   int squares = 10;
   std::string camera_json;
 };
+
+const char* name_of(CellReading reading) {
+  switch (reading) {
+    case CellReading::empty: return "empty";
+    case CellReading::dark: return "dark";
+    case CellReading::light: return "light";
+    case CellReading::piece: return "piece";
+    case CellReading::unknown: break;
+  }
+  return "unknown";
+}
 
 Result<void> locate(const LocateArguments& arguments) {
   if (!std::filesystem::is_regular_file(arguments.image))
@@ -34,12 +47,25 @@ Result<void> locate(const LocateArguments& arguments) {
   }
   const auto start = std::chrono::steady_clock::now();
   const auto board = locate_board(picture, arguments.squares);
+  std::vector<CellSight> cells;
+  if (board) {
+    const auto to_pixel = [&](double column, double row) { return board->to_pixel(column, row); };
+    const BoardView view = view_board(picture, arguments.squares, to_pixel);
+    cells = read_appearance(look_at_cells(view), arguments.squares, std::nullopt).cells;
+  }
   nlohmann::ordered_json json;
   json["found"] = board.has_value();
   json["corners"] = nlohmann::json::array();
   json["squares"] = nlohmann::json::array();
-  if (board)
+  if (board) {
     for (const auto& corner : board->corners(arguments.squares)) json["corners"].push_back({corner.x(), corner.y()});
+    for (int row = 0; row < arguments.squares; ++row) {
+      auto names = nlohmann::ordered_json::array();
+      for (int col = 0; col < arguments.squares; ++col)
+        names.push_back(name_of(cells[static_cast<std::size_t>(row * arguments.squares + col)].reading));
+      json["squares"].push_back(names);
+    }
+  }
   json["ms"] = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   std::cout << json.dump() << '\n';
   return {};

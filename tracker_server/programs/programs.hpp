@@ -7,6 +7,7 @@ class App;
 
 namespace counterpart {
 
+void add_serve(CLI::App& app, int& exit_code);
 void add_track(CLI::App& app, int& exit_code);
 void add_locate(CLI::App& app, int& exit_code);
 void add_calibrate(CLI::App& app, int& exit_code);

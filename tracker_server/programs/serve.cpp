@@ -1,9 +1,8 @@
-#include "tracker_server/programs/serve.hpp"
+#include "tracker_server/pipeline/serve.hpp"
 
 #include <fstream>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <string>
 
 #include <CLI/CLI.hpp>
@@ -11,7 +10,8 @@
 #include <spdlog/spdlog.h>
 
 #include "protocol/daemon/stop_signal.hpp"
-#include "tracker_server/pipeline/serve.hpp"
+#include "tracker_server/programs/corners.hpp"
+#include "tracker_server/programs/programs.hpp"
 
 namespace counterpart {
 namespace {
@@ -49,20 +49,6 @@ Result<void> read_board(const std::string& file, BoardGeometry& board) {
   return {};
 }
 
-// "corners=x0,y0,...,x3,y3"
-Result<std::array<double, 8>> read_corners(const std::string& text) {
-  std::array<double, 8> corners{};
-  std::istringstream in(text.substr(text.find('=') + 1));
-  char comma = ',';
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    if (i > 0 && !(in >> comma && comma == ',')) break;
-    if (!(in >> corners[i])) break;
-    if (i == 7 && (in >> std::ws).eof()) return corners;
-  }
-  return failure(ErrorCode::invalid_argument,
-                 "--init " + text + ": give eight numbers, corners=x0,y0,x1,y1,x2,y2,x3,y3");
-}
-
 Result<void> complete(Arguments& arguments) {
   ServeOptions& serve = arguments.serve;
   if (!arguments.board_file.empty()) {
@@ -70,7 +56,7 @@ Result<void> complete(Arguments& arguments) {
   }
   if (arguments.square_size_m > 0) serve.observe.board.square_size_m = arguments.square_size_m;
   if (arguments.init.rfind("corners=", 0) == 0) {
-    auto corners = read_corners(arguments.init);
+    const auto corners = corners_from(arguments.init.substr(std::string("corners=").size()));
     if (!corners) return tl::make_unexpected(corners.error());
     serve.observe.corners_px = *corners;
   } else if (arguments.init != "auto") {
