@@ -71,7 +71,8 @@ Result<Calibration> calibrate(const std::vector<BoardSight>& sights, int width, 
   }
   Calibration result;
   result.rms_px = rms;
-  result.focal_sigma_px = deviations.at<double>(0);
+  // With the aspect ratio fixed, fy is the one that is estimated; the deviation of fx is left at zero.
+  result.focal_sigma_px = deviations.at<double>(1);
   result.camera.width = width;
   result.camera.height = height;
   result.camera.fx = K(0, 0);
