@@ -97,7 +97,7 @@ Result<void> Hub::on_open_message(ConnectionId id, Connection& connection, const
     case MessageType::bye: {
       const PeerId gone = peer.id;
       const ConnectionId video = peer.video_connection;
-      drop(id, {ErrorCode::closed, std::get<Bye>(message).reason}, now_ns);
+      drop(id, {ErrorCode::closed, std::get<Bye>(message).reason}, now_ns, true);
       drop(video, {ErrorCode::closed, "the session is over"}, now_ns);
       forget_peer(gone);
       return {};

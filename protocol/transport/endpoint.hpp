@@ -30,6 +30,7 @@ struct PeerJoined {
 struct PeerLeft {
   PeerId peer = 0;
   Error reason;
+  bool said_goodbye = false;  // it ended its session with BYE; false: the link was lost, it may resume
 };
 
 struct Received {

@@ -111,6 +111,7 @@ void RendererDaemon::hear(std::int64_t timeout_ns) {
       }
     } else if (const auto* left = std::get_if<PeerLeft>(&inbound)) {
       spdlog::warn("the tracker is gone: {}", left->reason.message);
+      ended_ = ended_ || left->said_goodbye;
     } else {
       receive(std::move(std::get<Received>(inbound).message));
     }
@@ -131,8 +132,6 @@ void RendererDaemon::receive(Message&& message) {
     scene_is_new_ = true;
   } else if (auto* command = std::get_if<Command>(&message)) {
     commands_.push_back(std::move(*command));
-  } else if (std::holds_alternative<Bye>(message)) {
-    ended_ = true;
   }
 }
 
