@@ -1,0 +1,67 @@
+#include "game_controller/engine/level.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "game_controller/rules/generate.hpp"
+
+namespace counterpart {
+namespace {
+
+constexpr std::array<LevelPlan, highest_level> plans{{
+    {Evaluation::material, 1, 0, 60},
+    {Evaluation::material, 2, 0, 30},
+    {Evaluation::plain, 3, 0, 12},
+    {Evaluation::plain, 5, 20'000, 0},
+    {Evaluation::plain, 7, 60'000, 0},
+    {Evaluation::plain, 9, 150'000, 0},
+    {Evaluation::plain, 12, 500'000, 0},
+    {Evaluation::plain, 60, 1'500'000, 0},
+}};
+
+std::uint64_t mixed(std::uint64_t x) {  // splitmix64
+  x += 0x9E3779B97F4A7C15u;
+  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
+  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
+  return x ^ (x >> 31);
+}
+
+}  // namespace
+
+LevelPlan plan_of_level(int level) {
+  return plans[static_cast<std::size_t>(std::clamp(level, lowest_level, highest_level) - 1)];
+}
+
+Choice choose(Searcher& searcher, const Rules& rules, const Position& position,
+              const std::vector<std::uint64_t>& earlier, const LevelPlan& plan, std::uint64_t seed,
+              const std::function<bool()>& give_up) {
+  MoveList legal;
+  generate(rules, position, legal);
+  if (legal.size() == 1) return {{legal[0], 0}, {legal[0]}};
+  if (plan.margin > 0) {
+    const auto ranked = searcher.rank(position, earlier, plan.depth);
+    const auto near = std::count_if(ranked.begin(), ranked.end(),
+                                    [&](const ScoredMove& m) { return m.value >= ranked.front().value - plan.margin; });
+    const auto pick = mixed(seed ^ key_of(position)) % static_cast<std::uint64_t>(near);
+    const ScoredMove& chosen = ranked[static_cast<std::size_t>(pick)];
+    return {chosen, {chosen.move}};
+  }
+  SearchLimits limits;
+  limits.depth = plan.depth;
+  limits.nodes = plan.nodes;
+  limits.give_up = give_up;
+  const SearchReport report = searcher.search(position, earlier, limits);
+  return {{report.line.front(), report.value}, report.line};
+}
+
+double acted_thinking_s(const Rules& rules, const Position& position) {
+  MoveList legal;
+  generate(rules, position, legal);
+  if (legal.size() <= 1) return 0.6;
+  const auto ranked = Searcher(rules, Evaluation::plain, 1 << 12).rank(position, {}, 2);
+  const auto near = std::count_if(ranked.begin(), ranked.end(),
+                                  [&](const ScoredMove& m) { return m.value >= ranked.front().value - 10; });
+  return std::min(1.2 + 0.5 * static_cast<double>(near), 5.0);
+}
+
+}  // namespace counterpart

@@ -1,0 +1,42 @@
+// What is already known of positions, by key. One entry of 16 bytes a slot, four slots a bucket.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace counterpart {
+
+enum class Bound : std::uint8_t { none = 0, upper = 1, lower = 2, exact = 3 };
+
+struct Known {
+  std::uint32_t check = 0;
+  std::int16_t value = 0;
+  std::int8_t depth = 0;
+  Bound bound = Bound::none;
+  std::uint8_t from = 0;  // of the best move; from == to: none (a hint for ordering, not trusted)
+  std::uint8_t to = 0;
+  std::uint8_t age = 0;
+};
+
+class TranspositionTable {
+ public:
+  // bytes: rounded down to a power of two, at least one bucket.
+  explicit TranspositionTable(std::size_t bytes);
+
+  void clear();
+  void new_search() { ++age_; }
+
+  // nullptr if the position is not known.
+  const Known* find(std::uint64_t key) const;
+  void keep(std::uint64_t key, Known known);
+
+ private:
+  static constexpr std::size_t slots = 4;
+  std::size_t bucket_of(std::uint64_t key) const { return (key & mask_) * slots; }
+
+  std::vector<Known> entries_;
+  std::uint64_t mask_ = 0;
+  std::uint8_t age_ = 0;
+};
+
+}  // namespace counterpart

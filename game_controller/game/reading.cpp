@@ -1,0 +1,46 @@
+#include "game_controller/game/reading.hpp"
+
+#include <algorithm>
+
+namespace counterpart {
+
+Reading reading_of(const Occupancy& occupancy, int squares_a_side) {
+  Reading reading;
+  reading.covered = occupancy.covered;
+  const auto cells = static_cast<std::size_t>(squares_a_side) * static_cast<std::size_t>(squares_a_side);
+  if (occupancy.squares != squares_a_side || occupancy.cells.size() != cells) {
+    reading.unknown = all_squares(squares_a_side);
+    return reading;
+  }
+  for (int row = 0; row < squares_a_side; ++row) {
+    for (int col = 0; col < squares_a_side; ++col) {
+      const CellReading seen = occupancy.cells[static_cast<std::size_t>(row * squares_a_side + col)].reading;
+      const bool piece = seen == CellReading::dark || seen == CellReading::light || seen == CellReading::piece;
+      const auto square = square_of_cell({row, col}, squares_a_side);
+      if (!square) {
+        if (piece) reading.strays.push_back({row, col});
+      } else if (piece) {
+        reading.occupied |= square_mask(*square, squares_a_side);
+      } else if (seen != CellReading::empty) {
+        reading.unknown |= square_mask(*square, squares_a_side);
+      }
+    }
+  }
+  return reading;
+}
+
+void SteadyReading::see(const Occupancy& occupancy, int squares_a_side, std::int64_t now_ns) {
+  Reading reading = reading_of(occupancy, squares_a_side);
+  if (!seen_ || !(reading == reading_)) {
+    // The reader may know better than we how long nothing has changed (it sees every frame).
+    since_ns_ = now_ns - (reading.covered ? 0 : std::max<std::int64_t>(occupancy.stable_ns, 0));
+    reading_ = std::move(reading);
+    seen_ = true;
+  }
+}
+
+std::int64_t SteadyReading::steady_ns(std::int64_t now_ns) const {
+  return seen_ && !reading_.covered ? now_ns - since_ns_ : -1;
+}
+
+}  // namespace counterpart

@@ -1,0 +1,42 @@
+// A camera's reading in the terms of the game: which squares hold a real piece, which cannot be told, and for how long
+// that has been so.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "game_controller/rules/layout.hpp"
+#include "protocol/vocabulary/board_geometry.hpp"
+#include "protocol/vocabulary/occupancy.hpp"
+
+namespace counterpart {
+
+struct Reading {
+  Bits occupied = 0;
+  Bits unknown = 0;
+  std::vector<Cell> strays;  // pieces on squares that are not played on
+  bool covered = false;      // a hand is over the board: nothing here counts
+
+  friend bool operator==(const Reading&, const Reading&) = default;
+};
+
+// All unknown if the occupancy is of another board size.
+Reading reading_of(const Occupancy& occupancy, int squares_a_side);
+
+class SteadyReading {
+ public:
+  void see(const Occupancy& occupancy, int squares_a_side, std::int64_t now_ns);
+  void forget() { seen_ = false; }
+
+  const Reading& reading() const { return reading_; }
+
+  // For how long the board has been seen so, uncovered; -1 if it is not seen.
+  std::int64_t steady_ns(std::int64_t now_ns) const;
+
+ private:
+  Reading reading_;
+  bool seen_ = false;
+  std::int64_t since_ns_ = 0;
+};
+
+}  // namespace counterpart

@@ -1,0 +1,27 @@
+// Games as PDN 3.0, written strictly.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "game_controller/rules/record.hpp"
+
+namespace counterpart {
+
+struct PdnTags {
+  std::string event = "?";
+  std::string site = "?";
+  std::string date = "????.??.??";
+  std::string round = "?";
+  std::string light = "?";
+  std::string dark = "?";
+};
+
+// Result as the game stands: "2-0", "0-2", "1-1" or "*".
+std::string pdn_result(GameResult result);
+
+// Lines of at most 79 characters. A start other than the usual one is written as FEN tag.
+std::string write_pdn(const PdnTags& tags, const Record& record, GameResult result);
+
+}  // namespace counterpart

@@ -1,0 +1,137 @@
+// draughts: counts moves, judges, plays, and talks to other draughts programs.
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <iostream>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "game_controller/engine/level.hpp"
+#include "game_controller/links/hub_engine.hpp"
+#include "game_controller/notation/fen.hpp"
+#include "game_controller/notation/move_text.hpp"
+#include "game_controller/programs/judge_lines.hpp"
+#include "game_controller/programs/play.hpp"
+#include "game_controller/rules/generate.hpp"
+
+namespace {
+
+using namespace counterpart;
+using Clock = std::chrono::steady_clock;
+
+constexpr int failed = 1;
+constexpr int wrong_usage = 2;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+int complain(const Error& error, int code) {
+  std::cerr << "draughts: " << error.message << "\n";
+  return code;
+}
+
+Result<Position> position_of(const Rules& rules, const std::string& fen) {
+  return fen == "start" ? Result<Position>(start_position(rules)) : read_fen(rules, fen);
+}
+
+int run_perft(const Rules& rules, const std::string& fen, int depth) {
+  const auto position = position_of(rules, fen);
+  if (!position) return complain(position.error(), wrong_usage);
+  for (int d = 1; d <= depth; ++d) {
+    const auto start = Clock::now();
+    const std::uint64_t count = perft(rules, *position, d);
+    std::printf("%d %llu %.6f\n", d, static_cast<unsigned long long>(count), seconds_since(start));
+    std::fflush(stdout);
+  }
+  return 0;
+}
+
+int run_best(const Rules& rules, const std::string& fen, double move_time_s) {
+  const auto position = position_of(rules, fen);
+  if (!position) return complain(position.error(), wrong_usage);
+  if (!has_move(rules, *position)) {
+    return complain({ErrorCode::invalid_argument, "there is no legal move in " + fen + "; the game is over there."},
+                    failed);
+  }
+  const auto start = Clock::now();
+  Searcher searcher(rules, Evaluation::plain, std::size_t{64} << 20);
+  SearchLimits limits;
+  limits.give_up = [&] { return seconds_since(start) >= move_time_s; };
+  const SearchReport report = searcher.search(*position, {}, limits);
+  nlohmann::ordered_json best;
+  best["move"] = pdn_text(rules, *position, report.line.front());
+  best["hub"] = hub_text(rules, report.line.front());
+  best["score"] = report.value / static_cast<double>(man_value);
+  best["depth"] = report.depth;
+  best["nodes"] = report.nodes;
+  best["seconds"] = seconds_since(start);
+  best["line"] = nlohmann::json::array();
+  Position at = *position;
+  for (const Move& move : report.line) {
+    best["line"].push_back(pdn_text(rules, at, move));
+    at = after(rules, at, move);
+  }
+  std::cout << best.dump() << "\n";
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::ios::sync_with_stdio(false);
+  CLI::App app{"Draughts: counts moves, judges, plays, and talks to other draughts programs."};
+  app.set_version_flag("--version", std::string("draughts ") + COUNTERPART_VERSION);
+  app.require_subcommand(1);
+  std::string rules_name = "international";
+  const auto with_rules = [&](CLI::App* command) {
+    command->add_option("--rules", rules_name, "international (10x10), brazilian or english (8x8)")
+        ->check(CLI::IsMember({"international", "brazilian", "english"}))
+        ->capture_default_str();
+    return command;
+  };
+
+  std::string fen = "start";
+  int depth = 1;
+  CLI::App* perft_command =
+      with_rules(app.add_subcommand("perft", "Counts legal moves: depth, count and seconds, a line a depth"));
+  perft_command->add_option("fen", fen, "position as FEN, or start")->required();
+  perft_command->add_option("depth", depth, "plies")->required()->check(CLI::Range(1, 30));
+
+  double move_time_s = 1;
+  CLI::App* best_command = with_rules(app.add_subcommand("best", "Finds the best move; one JSON object"));
+  best_command->add_option("fen", fen, "position as FEN, or start")->required();
+  best_command->add_option("--move-time", move_time_s, "seconds")
+      ->check(CLI::Range(0.001, 86'400.0))
+      ->capture_default_str();
+
+  CLI::App* judge_command = with_rules(app.add_subcommand(
+      "judge", "Was it legal? Reads {\"before\",\"after\",\"light\"} a line, writes a verdict a line"));
+
+  PlayOptions play;
+  CLI::App* play_command = with_rules(app.add_subcommand("play", "Plays in the terminal"));
+  play_command->add_option("--level", play.level, "strength, 1 to 8")->check(CLI::Range(1, 8))->capture_default_str();
+  play_command->add_option("--fen", play.fen, "position to start from");
+  play_command->add_option("--pdn", play.pdn_file, "file that the game is saved to as it goes");
+  play_command->add_flag("--dark", play.dark, "you play the dark pieces");
+
+  CLI::App* hub_command = app.add_subcommand("hub", "Is a Hub 2 engine on standard input and output");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : wrong_usage;
+  }
+  const Rules& rules = *find_rules(rules_name);
+  if (perft_command->parsed()) return run_perft(rules, fen, depth);
+  if (best_command->parsed()) return run_best(rules, fen, move_time_s);
+  if (judge_command->parsed()) return judge_lines(rules, std::cin, std::cout) ? 0 : failed;
+  if (play_command->parsed()) {
+    const auto played = play_in_terminal(rules, play, std::cin, std::cout);
+    return played ? 0 : complain(played.error(), failed);
+  }
+  if (hub_command->parsed()) run_hub_engine(std::cin, std::cout);
+  return 0;
+}
