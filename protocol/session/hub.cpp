@@ -10,12 +10,13 @@ namespace counterpart {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr std::int64_t kHandshakeLimit = 3 * kSecond;
+constexpr std::int64_t kHandshakeLimit = 3 * kSecond;  // of a server, for whoever comes
+constexpr std::int64_t kAnswerLimit = kSecond;         // of a client, which can try again
 constexpr std::int64_t kMessageLimit = 10 * kSecond;
 constexpr std::int64_t kClosingLimit = kSecond;
 constexpr std::int64_t kSessionLimit = 60 * kSecond;
 constexpr std::int64_t kFirstWait = kSecond / 20;
-constexpr std::int64_t kLongestWait = 2 * kSecond;
+constexpr std::int64_t kLongestWait = kSecond / 2;
 constexpr std::int64_t kClockBurst = 8;
 constexpr std::size_t kMostConnections = 64;
 constexpr std::size_t kMostAway = 64;
@@ -249,11 +250,15 @@ void Hub::tick(std::int64_t now_ns) {
   forget_the_long_gone(now_ns);
 }
 
+std::int64_t Hub::handshake_limit() const {
+  return end_ == End::server ? kHandshakeLimit : kAnswerLimit;
+}
+
 void Hub::tick(ConnectionId id, Connection& connection, std::int64_t now_ns) {
   if (connection.stage == Stage::closing) return;
   if (connection.stage != Stage::open) {
-    if (now_ns - connection.opened_ns < kHandshakeLimit) return;
-    return fail(id, connection, {ErrorCode::timeout, "the peer did not open the session within 3 s"}, now_ns);
+    if (now_ns - connection.opened_ns < handshake_limit()) return;
+    return fail(id, connection, {ErrorCode::timeout, "the peer did not open the session in time"}, now_ns);
   }
   if (inbound_full()) connection.last_read_ns = now_ns;  // it is we who do not listen
   if (now_ns - connection.last_read_ns >= options_.dead_after_ns) {
@@ -298,7 +303,7 @@ std::int64_t Hub::next_tick(std::int64_t now_ns) const {
     if (connection.stage == Stage::closing) {
       sooner(connection.closing_since_ns + kClosingLimit + 1);
     } else if (connection.stage != Stage::open) {
-      sooner(connection.opened_ns + kHandshakeLimit);
+      sooner(connection.opened_ns + handshake_limit());
     } else {
       sooner(connection.next_heartbeat_ns);
       sooner(connection.last_read_ns + options_.dead_after_ns);

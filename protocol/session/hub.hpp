@@ -141,6 +141,7 @@ class Hub {
   void end_session(Peer& peer, const Error& why, std::int64_t now_ns);
   void push(Peer& peer, const Outgoing& message, std::int64_t now_ns);
   void tick(ConnectionId id, Connection& connection, std::int64_t now_ns);
+  std::int64_t handshake_limit() const;
   void forget_the_long_gone(std::int64_t now_ns);
   void try_again_later(Dial& dial, std::int64_t now_ns);
   void note_refusal(const Error& why);

@@ -29,7 +29,7 @@ std::int64_t monotonic_ns() {
 
 int fail(const Error& error) {
   std::cerr << "vhp: " << error.message << '\n';
-  return kFailed;
+  return error.code == ErrorCode::invalid_argument ? kWrongUsage : kFailed;
 }
 
 Result<std::unique_ptr<Endpoint>> open_link(const LinkArguments& arguments, Role role, bool want_video,

@@ -27,7 +27,7 @@ bool interrupted();
 
 std::int64_t monotonic_ns();
 
-// Writes "vhp: ..." to stderr; returns kFailed.
+// Writes "vhp: ..." to stderr; returns kFailed, or kWrongUsage for what cannot be meant.
 int fail(const Error& error);
 
 // Connects and waits for the session.

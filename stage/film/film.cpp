@@ -9,6 +9,7 @@ namespace counterpart::stage {
 Film::Film(const Scenario& scenario, std::unique_ptr<Room> room)
     : scenario_(scenario), room_(std::move(room)), world_(starting_world(scenario.board)), player_(scenario.player) {
   world_.player_present = scenario.player_present;
+  if (scenario.no_pieces) world_.pieces.clear();
 }
 
 Result<Film> Film::begin(const Scenario& scenario) {

@@ -24,8 +24,8 @@ std::vector<CellLook> look_at_cells(const BoardView& view);
 
 // What was learned from a picture; kept, it steadies the next one.
 struct BoardLook {
-  int playable_parity = 1;     // (row + col) % 2 of the squares that carry pieces
-  double threshold = 1;        // of the evidence for a piece
+  int playable_parity = 1;  // (row + col) % 2 of the squares that carry pieces
+  double threshold = 1;     // of the evidence for a piece
   bool two_colours = false;
   Colour dark_piece, light_piece;
 };

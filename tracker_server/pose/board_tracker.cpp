@@ -129,8 +129,8 @@ std::optional<BoardTracker::Attempt> BoardTracker::from_located(const LocatedBoa
   std::optional<PlanePose> chosen;
   for (const Matrix3d& H : ways_round(located, options_.board)) {
     const bool known = options_.camera.has_value() || ever_seen_;
-    const PlanePose pose = known ? pose_of_board(H, options_.board, camera_)
-                                 : pose_and_focal_of_board(H, options_.board, width, height);
+    const PlanePose pose =
+        known ? pose_of_board(H, options_.board, camera_) : pose_and_focal_of_board(H, options_.board, width, height);
     // Once seen, the board is taken to lie as it lay.
     if (chosen && (!last_X_CB_ || angle_between(pose.X_CB, *last_X_CB_) >= angle_between(chosen->X_CB, *last_X_CB_)))
       continue;

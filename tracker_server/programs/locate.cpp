@@ -1,4 +1,6 @@
 // tracker_server locate: one picture, one JSON object.
+#include "tracker_server/locate/locate.hpp"
+
 #include <chrono>
 #include <filesystem>
 #include <iostream>
@@ -10,7 +12,6 @@
 #include <spdlog/spdlog.h>
 
 #include "tracker_server/camera/camera_json.hpp"
-#include "tracker_server/locate/locate.hpp"
 #include "tracker_server/pieces/appearance.hpp"
 #include "tracker_server/pieces/board_view.hpp"
 #include "tracker_server/programs/programs.hpp"
@@ -26,11 +27,16 @@ struct LocateArguments {
 
 const char* name_of(CellReading reading) {
   switch (reading) {
-    case CellReading::empty: return "empty";
-    case CellReading::dark: return "dark";
-    case CellReading::light: return "light";
-    case CellReading::piece: return "piece";
-    case CellReading::unknown: break;
+    case CellReading::empty:
+      return "empty";
+    case CellReading::dark:
+      return "dark";
+    case CellReading::light:
+      return "light";
+    case CellReading::piece:
+      return "piece";
+    case CellReading::unknown:
+      break;
   }
   return "unknown";
 }

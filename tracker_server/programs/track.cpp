@@ -174,8 +174,10 @@ Result<void> track(const TrackArguments& arguments) {
 
 void add_track(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<TrackArguments>();
-  CLI::App* command = app.add_subcommand("track", "Write the pose of the board, or of a model, in every frame of a film");
-  command->add_option("sequence", arguments->sequence, "SEQUENCE folder, folder of pictures, film or stream")->required();
+  CLI::App* command =
+      app.add_subcommand("track", "Write the pose of the board, or of a model, in every frame of a film");
+  command->add_option("sequence", arguments->sequence, "SEQUENCE folder, folder of pictures, film or stream")
+      ->required();
   command->add_option("--poses", arguments->poses, "CSV file to write")->required();
   command->add_option("--squares", arguments->squares, "Squares a side")->check(CLI::Range(4, 12));
   command->add_option("--square-size", arguments->square_size_m, "Side of a square, metres")
