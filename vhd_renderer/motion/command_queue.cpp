@@ -1,7 +1,6 @@
 #include "vhd_renderer/motion/command_queue.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "protocol/codec/names.hpp"

@@ -125,7 +125,7 @@ void Director::State::measure_grasps() {
     if (phase == grasp->reported || grasp->id == 0) continue;
     grasp->reported = phase;
     const bool measured = phase == GraspPhase::close || phase == GraspPhase::release;
-    queue.progress(grasp->id, name_of(phase), measured ? grasp->gap_mm : -1, now_ns);
+    queue.progress(grasp->id, phase_name(phase), measured ? grasp->gap_mm : -1, now_ns);
   }
 }
 

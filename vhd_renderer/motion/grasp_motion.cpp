@@ -26,7 +26,7 @@ float reach_time(float distance, const std::string& style) {
 
 }  // namespace
 
-const char* name_of(GraspPhase phase) {
+const char* phase_name(GraspPhase phase) {
   static constexpr std::array<const char*, 6> names{"reach", "close", "carry", "release", "retract", "done"};
   return names[static_cast<std::size_t>(phase)];
 }

@@ -27,7 +27,7 @@ struct GraspTask {
 
 enum class GraspPhase : std::uint8_t { reach, close, carry, release, retract, done };
 
-const char* name_of(GraspPhase phase);
+const char* phase_name(GraspPhase phase);
 
 struct GraspMoment {
   GraspPhase phase = GraspPhase::reach;
