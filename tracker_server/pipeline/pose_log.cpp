@@ -9,7 +9,7 @@
 
 namespace counterpart {
 
-const char* name_of(TrackStatus status) {
+const char* csv_word(TrackStatus status) {
   switch (status) {
     case TrackStatus::ok:
     case TrackStatus::relocalised:
@@ -41,7 +41,7 @@ void PoseLog::add(const PoseEstimate& pose, const Intrinsics& camera, const Boar
   }
   for (const double value : pose.X_CB.p) out_ << ',' << value;
   for (const double value : pose.X_CB.q) out_ << ',' << value;
-  out_ << ',' << name_of(pose.status) << ',' << pose.rms_px << ',' << camera.fx << ',' << ms;
+  out_ << ',' << csv_word(pose.status) << ',' << pose.rms_px << ',' << camera.fx << ',' << ms;
   const Eigen::Isometry3d X_CB = to_eigen(pose.X_CB);
   const double half = 0.5 * board.squares * board.square_size_m;
   for (const auto& [x, y] : {std::pair{-half, half}, {half, half}, {half, -half}, {-half, -half}}) {
