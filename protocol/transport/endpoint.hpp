@@ -27,6 +27,7 @@ struct PeerJoined {
   bool lockstep = false;  // both sides asked for it
 };
 
+// May come a second time for a peer that is away: when its session is given up.
 struct PeerLeft {
   PeerId peer = 0;
   Error reason;
