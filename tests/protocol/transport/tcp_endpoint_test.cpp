@@ -155,10 +155,11 @@ TEST(TcpEndpoint, AFreshServerIsFoundAgainAndIsNotTakenForTheOldOne) {
 TEST(TcpEndpoint, AHalfOpenLinkIsNoticedAndComesBack) {
   LinkOptions quick = options_of(Role::tracker);
   quick.heartbeat_ns = kSecond / 10;
-  quick.dead_after_ns = kSecond;  // long enough for a machine that is busy with other things
+  quick.dead_after_ns = 20 * kSecond;  // the tracker is patient, so that it is the renderer who notices
   auto tracker = listen_tcp("127.0.0.1:0", quick);
   Relay relay(port_of(**tracker));
   quick.role = Role::renderer;
+  quick.dead_after_ns = kSecond;  // long enough for a machine that is busy with other things
   auto renderer = connect_tcp(relay.address(), quick, 2 * kSecond);
   ASSERT_TRUE(renderer);
   joined(**renderer);
