@@ -23,7 +23,8 @@ struct PeerJoined {
   PeerId peer = 0;
   Role role = Role::observer;
   std::string software;
-  bool resumed = false;  // the same session after a lost link: nothing kept was lost. false: a fresh process
+  bool resumed = false;   // the same session after a lost link: nothing kept was lost. false: a fresh process
+  bool lockstep = false;  // both sides asked for it
 };
 
 struct PeerLeft {
@@ -46,7 +47,8 @@ struct PeerStats {
   std::uint64_t bytes_sent = 0, bytes_received = 0;
   std::uint64_t dropped = 0;  // latest-wins messages replaced before they went out
   std::uint64_t skipped = 0;  // received messages of unknown type
-  std::uint32_t queued = 0;
+  std::uint32_t queued = 0;           // waiting to go out
+  std::uint32_t unacknowledged = 0;   // kept messages that the peer has not confirmed, queued ones included
   std::int64_t clock_offset_ns = 0;  // peer's monotonic clock minus ours
   std::int64_t clock_bound_ns = -1;  // half-width of the interval that surely holds the offset; -1: not known yet
   std::int64_t round_trip_ns = -1;

@@ -12,6 +12,7 @@ constexpr std::array kTypes{
     MessageType::intrinsics, MessageType::pose,          MessageType::video,          MessageType::mask,
     MessageType::debug,      MessageType::frame_done,    MessageType::board_state,    MessageType::game_event,
     MessageType::control,    MessageType::scene,         MessageType::command,        MessageType::feedback,
+    MessageType::challenge,  MessageType::proof,
 };
 static_assert(kTypes.size() == std::variant_size_v<Message>);
 

@@ -26,6 +26,8 @@ enum class MessageType : std::uint16_t {
   clock_request = 6,
   clock_response = 7,
   acknowledge = 8,
+  challenge = 9,
+  proof = 10,
   intrinsics = 16,
   pose = 17,
   video = 18,
@@ -56,6 +58,7 @@ struct Hello {
   std::uint64_t resume_session = 0;  // 0: a new session
   std::uint64_t last_seq = 0;        // of the kept messages of the resumed session, the last one received
   bool video = false;                // this connection carries VIDEO for resume_session, nothing else
+  bool want_video = false;           // a second connection for VIDEO will follow
   bool lockstep = false;             // no frame dropped; FRAME_DONE paces the camera
 
   friend bool operator==(const Hello&, const Hello&) = default;
@@ -114,6 +117,22 @@ struct Acknowledge {
   friend bool operator==(const Acknowledge&, const Acknowledge&) = default;
 };
 
+using Bytes32 = std::array<std::uint8_t, 32>;
+
+// A server that has a token asks the client to prove that it has it, too.
+struct Challenge {
+  Bytes32 nonce{};
+
+  friend bool operator==(const Challenge&, const Challenge&) = default;
+};
+
+struct Proof {
+  Bytes32 nonce{};
+  Bytes32 mac{};  // HMAC-SHA256, see docs/protocol.md section 5
+
+  friend bool operator==(const Proof&, const Proof&) = default;
+};
+
 struct FrameDone {
   FrameStamp stamp;
 
@@ -139,7 +158,7 @@ struct DebugView {
 
 using Message = std::variant<Hello, Welcome, Heartbeat, ErrorReport, Bye, ClockRequest, ClockResponse, Acknowledge,
                              Intrinsics, PoseEstimate, VideoFrame, Mask, DebugView, FrameDone, BoardState, GameEvent,
-                             Control, Scene, Command, Feedback>;
+                             Control, Scene, Command, Feedback, Challenge, Proof>;
 
 MessageType type_of(const Message& message);
 

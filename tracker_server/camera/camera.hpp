@@ -8,6 +8,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "protocol/vocabulary/intrinsics.hpp"
+#include "protocol/vocabulary/message.hpp"
 #include "protocol/vocabulary/result.hpp"
 #include "protocol/vocabulary/stamp.hpp"
 
@@ -34,6 +35,11 @@ class Camera {
   virtual std::optional<Intrinsics> intrinsics() const { return std::nullopt; }
 
   virtual std::uint64_t dropped() const { return 0; }
+
+  // For a camera host that plays along (the stage, a capture being replayed): this frame has been composited, the next one may
+  // come; and what is shown in the mirror (events, board states). Other cameras do not listen.
+  virtual void done(const FrameStamp& /*stamp*/) {}
+  virtual void tell(const Message& /*message*/) {}
 };
 
 // uri: /dev/videoN, a video file, a folder of pictures (name order; camera.json beside them is read), rtsp:// or

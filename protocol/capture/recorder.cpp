@@ -1,0 +1,143 @@
+#include "protocol/capture/recorder.hpp"
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "protocol/capture/mcap_writer.hpp"
+#include "protocol/capture/wire_record.hpp"
+#include "protocol/codec/codec.hpp"
+#include "protocol/codec/names.hpp"
+
+namespace counterpart {
+namespace {
+
+constexpr auto kChunkTime = std::chrono::milliseconds(200);
+constexpr std::size_t kChunkBytes = 1U << 20;
+constexpr std::size_t kMostPendingBytes = 256U << 20;
+
+}  // namespace
+
+struct Recorder::State {
+  struct Seen {
+    std::int64_t now_ns = 0;
+    Bytes record;  // a WireRecord
+  };
+
+  std::unique_ptr<McapWriter> writer;  // of the writing thread alone
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::vector<Seen> pending;
+  std::size_t pending_bytes = 0;
+  std::uint64_t lost = 0;
+  bool ending = false;
+  std::optional<Error> error;
+  bool error_taken = false;
+  std::thread thread;
+
+  void note(const Error& why) {
+    const std::lock_guard lock(mutex);
+    if (!error) error = why;
+  }
+
+  void write(const Seen& seen) {
+    const auto wire = read_wire_record(seen.record);
+    if (!wire) return;
+    const auto log_ns = static_cast<std::uint64_t>(seen.now_ns);
+    const auto publish_ns = static_cast<std::uint64_t>(wire->header.time_ns);
+    writer->add(writer->channel("/wire", "counterpart-wire"), log_ns, publish_ns, seen.record);
+    const auto type = static_cast<MessageType>(wire->header.type);
+    if (is_known(wire->header.type) && type != MessageType::video) {
+      const std::string topic = (wire->incoming ? "/in/" : "/out/") + std::string(name_of(type));
+      writer->add(writer->channel(topic, is_json(type) ? "json" : "counterpart"), log_ns, publish_ns, wire->body);
+    }
+  }
+
+  // Takes everything that waits, as chunks; true: the end was asked for.
+  bool write_pending() {
+    std::vector<Seen> batch;
+    bool end = false;
+    {
+      std::unique_lock lock(mutex);
+      changed.wait_for(lock, kChunkTime, [&] { return ending || pending_bytes >= kChunkBytes; });
+      batch.swap(pending);
+      pending_bytes = 0;
+      end = ending;
+    }
+    for (const Seen& seen : batch) {
+      write(seen);
+      if (writer->chunk_bytes() >= kChunkBytes) flush();
+    }
+    flush();
+    return end;
+  }
+
+  void flush() {
+    if (auto done = writer->write_chunk(); !done) note(done.error());
+  }
+
+  void run() {
+    while (!write_pending()) {
+    }
+    if (auto done = writer->close(); !done) note(done.error());
+  }
+};
+
+Recorder::Recorder(std::unique_ptr<State> state) : state_(std::move(state)) {
+  state_->thread = std::thread([this] { state_->run(); });
+}
+
+Result<std::unique_ptr<Recorder>> Recorder::open(const std::string& path, Role role, const std::string& software) {
+  auto writer = McapWriter::create(path);
+  if (!writer) return tl::make_unexpected(writer.error());
+  const auto utc = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                       std::chrono::system_clock::now().time_since_epoch())
+                       .count();
+  auto noted = (*writer)->write_metadata("session", {{"role", std::string(name_of(role))},
+                                                     {"software", software},
+                                                     {"started_utc_ns", std::to_string(utc)}});
+  if (!noted) return tl::make_unexpected(noted.error());
+  auto state = std::make_unique<State>();
+  state->writer = std::move(*writer);
+  return std::unique_ptr<Recorder>(new Recorder(std::move(state)));
+}
+
+Recorder::~Recorder() {
+  {
+    const std::lock_guard lock(state_->mutex);
+    state_->ending = true;
+  }
+  state_->changed.notify_one();
+  state_->thread.join();
+}
+
+void Recorder::saw(bool incoming, bool video_lane, PeerId peer, const HeaderBytes& header, ByteView body,
+                   std::int64_t now_ns) {
+  Bytes record = make_wire_record(incoming, video_lane, peer, header, body);
+  bool full = false;
+  {
+    const std::lock_guard lock(state_->mutex);
+    if (state_->pending_bytes > kMostPendingBytes) {
+      ++state_->lost;
+      if (!state_->error) {
+        state_->error = Error{ErrorCode::limit_exceeded, "the disk is too slow for the capture: messages are missing in it"};
+      }
+      return;
+    }
+    state_->pending_bytes += record.size();
+    state_->pending.push_back({now_ns, std::move(record)});
+    full = state_->pending_bytes >= kChunkBytes;
+  }
+  if (full) state_->changed.notify_one();
+}
+
+std::optional<Error> Recorder::take_error() {
+  const std::lock_guard lock(state_->mutex);
+  if (!state_->error || state_->error_taken) return std::nullopt;
+  state_->error_taken = true;
+  return state_->error;
+}
+
+}  // namespace counterpart

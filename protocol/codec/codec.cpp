@@ -1,0 +1,319 @@
+#include "protocol/codec/codec.hpp"
+
+#include <cmath>
+#include <numeric>
+#include <string_view>
+#include <type_traits>
+
+#include <nlohmann/json.hpp>
+
+#include "protocol/codec/json.hpp"
+#include "protocol/codec/names.hpp"
+
+namespace counterpart {
+namespace {
+
+constexpr std::size_t kPoseSize = 180;
+constexpr std::size_t kVideoHead = 32;
+constexpr std::size_t kMaskHead = 24;
+
+template <class T>
+constexpr bool is_fixed =
+    std::is_same_v<T, Heartbeat> || std::is_same_v<T, ClockRequest> || std::is_same_v<T, ClockResponse> ||
+    std::is_same_v<T, Acknowledge> || std::is_same_v<T, PoseEstimate> || std::is_same_v<T, VideoFrame> ||
+    std::is_same_v<T, Mask> || std::is_same_v<T, FrameDone>;
+
+tl::unexpected<Error> bad(MessageType type, const char* problem) {
+  return failure(ErrorCode::bad_format, "a " + std::string(name_of(type)) + " message " + problem);
+}
+
+bool is_sane(const PoseEstimate& m) {
+  double norm = 0;
+  for (const double q : m.X_CB.q) norm += q * q;
+  bool sane = std::abs(std::sqrt(norm) - 1) < 1e-3;
+  for (const double p : m.X_CB.p) sane = sane && std::abs(p) <= 1e6;
+  for (const float c : m.covariance) sane = sane && std::isfinite(c);
+  sane = sane && m.rms_px >= 0 && std::isfinite(m.rms_px) && m.seen_share >= 0 && m.seen_share <= 1;
+  return sane && !name_of(m.status).empty();
+}
+
+bool is_sane(PixelCodec codec, std::uint32_t width, std::uint32_t height, std::uint32_t stride, std::size_t size) {
+  if (width == 0 || height == 0) return false;
+  if (codec == PixelCodec::jpeg) return stride == 0 && size > 0;
+  return codec == PixelCodec::raw_bgr8 && stride >= 3 * width && size == std::size_t{stride} * height;
+}
+
+bool is_sane(const Mask& m) {
+  const auto covered = std::accumulate(m.runs.begin(), m.runs.end(), std::uint64_t{0});
+  return m.width > 0 && m.height > 0 && covered == std::uint64_t{m.width} * m.height;
+}
+
+void put(Bytes& out, const FrameStamp& stamp) {
+  append(out, stamp.frame_id);
+  append(out, stamp.capture_ns);
+}
+
+void put(Bytes& out, const Heartbeat& m) {
+  append(out, m.queued);
+  append(out, std::uint32_t{0});
+  append(out, m.dropped);
+}
+
+void put(Bytes& out, const ClockRequest& m) {
+  append(out, m.sent_ns);
+}
+
+void put(Bytes& out, const ClockResponse& m) {
+  append(out, m.sent_ns);
+  append(out, m.received_ns);
+  append(out, m.answered_ns);
+}
+
+void put(Bytes& out, const Acknowledge& m) {
+  append(out, m.seq);
+}
+
+void put(Bytes& out, const FrameDone& m) {
+  put(out, m.stamp);
+}
+
+void put(Bytes& out, const PoseEstimate& m) {
+  out.reserve(kPoseSize);
+  put(out, m.stamp);
+  append(out, m.object_id);
+  append(out, m.intrinsics_id);
+  append(out, static_cast<std::uint32_t>(m.status));
+  append(out, m.rms_px);
+  append(out, m.seen_share);
+  append(out, std::uint32_t{0});
+  for (const double q : m.X_CB.q) append(out, q);
+  for (const double p : m.X_CB.p) append(out, p);
+  for (const float c : m.covariance) append(out, c);
+}
+
+void put(Bytes& out, const VideoFrame& m) {
+  out.reserve(kVideoHead + m.bytes.size());
+  put(out, m.stamp);
+  append(out, static_cast<std::uint16_t>(m.codec));
+  append(out, m.width);
+  append(out, m.height);
+  append(out, std::uint16_t{0});
+  append(out, m.stride);
+  append(out, static_cast<std::uint32_t>(m.bytes.size()));
+  out.insert(out.end(), m.bytes.begin(), m.bytes.end());
+}
+
+void put(Bytes& out, const Mask& m) {
+  out.reserve(kMaskHead + 4 * m.runs.size());
+  put(out, m.stamp);
+  append(out, m.width);
+  append(out, m.height);
+  append(out, static_cast<std::uint32_t>(m.runs.size()));
+  for (const std::uint32_t run : m.runs) append(out, run);
+}
+
+FrameStamp stamp_at(const std::uint8_t* at) {
+  return {load<std::uint64_t>(at), load<std::int64_t>(at + 8)};
+}
+
+Result<Message> read_pose(ByteView body) {
+  const std::uint8_t* at = body.data();
+  PoseEstimate m;
+  m.stamp = stamp_at(at);
+  m.object_id = load<std::uint32_t>(at + 16);
+  m.intrinsics_id = load<std::uint32_t>(at + 20);
+  m.status = static_cast<TrackStatus>(load<std::uint8_t>(at + 24));
+  m.rms_px = load<float>(at + 28);
+  m.seen_share = load<float>(at + 32);
+  for (std::size_t i = 0; i < 4; ++i) m.X_CB.q[i] = load<double>(at + 40 + 8 * i);
+  for (std::size_t i = 0; i < 3; ++i) m.X_CB.p[i] = load<double>(at + 72 + 8 * i);
+  for (std::size_t i = 0; i < m.covariance.size(); ++i) m.covariance[i] = load<float>(at + 96 + 4 * i);
+  if (!is_sane(m)) return bad(MessageType::pose, "has numbers out of range");
+  return m;
+}
+
+Result<Message> read_video(ByteView body) {
+  const std::uint8_t* at = body.data();
+  VideoFrame m;
+  m.stamp = stamp_at(at);
+  m.codec = static_cast<PixelCodec>(load<std::uint16_t>(at + 16));
+  m.width = load<std::uint16_t>(at + 18);
+  m.height = load<std::uint16_t>(at + 20);
+  m.stride = load<std::uint32_t>(at + 24);
+  const auto size = load<std::uint32_t>(at + 28);
+  if (size > body.size() - kVideoHead) return bad(MessageType::video, "is shorter than its picture");
+  if (!is_sane(m.codec, m.width, m.height, m.stride, size)) {
+    return bad(MessageType::video, "has a size that does not fit its codec");
+  }
+  const ByteView picture = body.subspan(kVideoHead, size);
+  m.bytes.assign(picture.begin(), picture.end());
+  return m;
+}
+
+Result<Message> read_mask(ByteView body) {
+  const std::uint8_t* at = body.data();
+  Mask m;
+  m.stamp = stamp_at(at);
+  m.width = load<std::uint16_t>(at + 16);
+  m.height = load<std::uint16_t>(at + 18);
+  const auto count = load<std::uint32_t>(at + 20);
+  if (count > (body.size() - kMaskHead) / 4) return bad(MessageType::mask, "is shorter than its runs");
+  m.runs.resize(count);
+  for (std::size_t i = 0; i < count; ++i) m.runs[i] = load<std::uint32_t>(at + kMaskHead + 4 * i);
+  if (!is_sane(m)) return bad(MessageType::mask, "has runs that do not sum to its size");
+  return m;
+}
+
+// The least size of a fixed body; 0 for JSON.
+std::size_t fixed_size(MessageType type) {
+  switch (type) {
+    case MessageType::heartbeat:
+    case MessageType::frame_done:
+      return 16;
+    case MessageType::clock_request:
+    case MessageType::acknowledge:
+      return 8;
+    case MessageType::clock_response:
+    case MessageType::mask:
+      return 24;
+    case MessageType::video:
+      return kVideoHead;
+    case MessageType::pose:
+      return kPoseSize;
+    default:
+      return 0;
+  }
+}
+
+Result<Message> read_fixed(MessageType type, ByteView body) {
+  if (body.size() < fixed_size(type)) return bad(type, "is too short");
+  const std::uint8_t* at = body.data();
+  switch (type) {
+    case MessageType::heartbeat:
+      return Heartbeat{load<std::uint32_t>(at), load<std::uint64_t>(at + 8)};
+    case MessageType::clock_request:
+      return ClockRequest{load<std::int64_t>(at)};
+    case MessageType::clock_response:
+      return ClockResponse{load<std::int64_t>(at), load<std::int64_t>(at + 8), load<std::int64_t>(at + 16)};
+    case MessageType::acknowledge:
+      return Acknowledge{load<std::uint64_t>(at)};
+    case MessageType::frame_done:
+      return FrameDone{stamp_at(at)};
+    case MessageType::pose:
+      return read_pose(body);
+    case MessageType::video:
+      return read_video(body);
+    case MessageType::mask:
+      return read_mask(body);
+    default:
+      return failure(ErrorCode::internal, "not a fixed message");
+  }
+}
+
+template <class T>
+Result<Message> read_json(ByteView body) {
+  return from_json_text<T>(std::string_view(reinterpret_cast<const char*>(body.data()), body.size())).map([](T value) {
+    return Message(std::move(value));
+  });
+}
+
+template <class T>
+Result<Bytes> encode_json(const T& message) {
+  const nlohmann::json object = to_json(message);
+  if (auto good = from_json<T>(object); !good) return tl::make_unexpected(good.error());
+  const std::string text = object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return Bytes(text.begin(), text.end());
+}
+
+template <class T>
+Result<Bytes> encode_fixed(const T& message) {
+  if constexpr (std::is_same_v<T, PoseEstimate> || std::is_same_v<T, Mask>) {
+    if (!is_sane(message)) return bad(type_of(message), "has numbers out of range");
+  } else if constexpr (std::is_same_v<T, VideoFrame>) {
+    if (!is_sane(message.codec, message.width, message.height, message.stride, message.bytes.size())) {
+      return bad(MessageType::video, "has a size that does not fit its codec");
+    }
+  }
+  Bytes out;
+  put(out, message);
+  return out;
+}
+
+}  // namespace
+
+Result<Bytes> encode(const Message& message) {
+  auto body = std::visit(
+      [](const auto& m) -> Result<Bytes> {
+        if constexpr (is_fixed<std::decay_t<decltype(m)>>) {
+          return encode_fixed(m);
+        } else {
+          return encode_json(m);
+        }
+      },
+      message);
+  const MessageType type = type_of(message);
+  if (body && body->size() > max_length(static_cast<std::uint16_t>(type))) {
+    return failure(ErrorCode::limit_exceeded, "a " + std::string(name_of(type)) + " message has " +
+                                                  std::to_string(body->size()) + " bytes, more than the " +
+                                                  std::to_string(max_length(static_cast<std::uint16_t>(type))) +
+                                                  " permitted");
+  }
+  return body;
+}
+
+bool is_known(std::uint16_t type) {
+  return !name_of(static_cast<MessageType>(type)).empty();
+}
+
+bool is_json(MessageType type) {
+  return fixed_size(type) == 0;
+}
+
+Result<Message> decode(MessageType type, ByteView body) {
+  switch (type) {
+    case MessageType::hello:
+      return read_json<Hello>(body);
+    case MessageType::welcome:
+      return read_json<Welcome>(body);
+    case MessageType::error:
+      return read_json<ErrorReport>(body);
+    case MessageType::bye:
+      return read_json<Bye>(body);
+    case MessageType::challenge:
+      return read_json<Challenge>(body);
+    case MessageType::proof:
+      return read_json<Proof>(body);
+    case MessageType::intrinsics:
+      return read_json<Intrinsics>(body);
+    case MessageType::debug:
+      return read_json<DebugView>(body);
+    case MessageType::board_state:
+      return read_json<BoardState>(body);
+    case MessageType::game_event:
+      return read_json<GameEvent>(body);
+    case MessageType::control:
+      return read_json<Control>(body);
+    case MessageType::scene:
+      return read_json<Scene>(body);
+    case MessageType::command:
+      return read_json<Command>(body);
+    case MessageType::feedback:
+      return read_json<Feedback>(body);
+    default:
+      return read_fixed(type, body);
+  }
+}
+
+FrameId frame_of(const Message& message) {
+  return std::visit(
+      [](const auto& m) -> FrameId {
+        if constexpr (requires { m.stamp.frame_id; }) {
+          return m.stamp.frame_id;
+        } else {
+          return 0;
+        }
+      },
+      message);
+}
+
+}  // namespace counterpart

@@ -1,0 +1,72 @@
+#include "protocol/framing/frame_parser.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+namespace counterpart {
+
+std::span<std::uint8_t> FrameParser::room() {
+  if (open_ && begin_ == end_) return std::span(open_->body).subspan(body_have_);
+  if (begin_ == end_) begin_ = end_ = 0;
+  if (end_ == buffer_.size()) {
+    std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
+    end_ -= begin_;
+    begin_ = 0;
+  }
+  return std::span(buffer_).subspan(end_);
+}
+
+void FrameParser::filled(std::size_t count) {
+  if (open_ && begin_ == end_) {
+    body_have_ += count;
+  } else {
+    end_ += count;
+  }
+}
+
+Result<std::optional<RawMessage>> FrameParser::next() {
+  if (failed_) return tl::make_unexpected(*failed_);
+  if (!open_) {
+    if (end_ - begin_ < kHeaderSize) return std::nullopt;
+    RawMessage message;
+    std::memcpy(message.header_bytes.data(), buffer_.data() + begin_, kHeaderSize);
+    auto header = read_header(message.header_bytes);
+    if (!header) {
+      failed_ = header.error();
+      return tl::make_unexpected(*failed_);
+    }
+    begin_ += kHeaderSize;
+    message.header = *header;
+    message.body.resize(header->length);
+    open_ = std::move(message);
+    body_have_ = 0;
+  }
+  const std::size_t take = std::min(open_->body.size() - body_have_, end_ - begin_);
+  if (take > 0) std::memcpy(open_->body.data() + body_have_, buffer_.data() + begin_, take);
+  begin_ += take;
+  body_have_ += take;
+  if (body_have_ < open_->body.size()) return std::nullopt;
+  if (!crc_matches(open_->header_bytes, open_->body)) {
+    failed_ = Error{ErrorCode::bad_format, "the checksum of a message of type " + std::to_string(open_->header.type) +
+                                               " does not match: its bytes were changed on the way"};
+    return tl::make_unexpected(*failed_);
+  }
+  std::optional<RawMessage> whole = std::move(open_);
+  open_.reset();
+  return whole;
+}
+
+std::size_t FrameParser::feed(ByteView bytes) {
+  const auto space = room();
+  const std::size_t count = std::min(space.size(), bytes.size());
+  if (count > 0) std::memcpy(space.data(), bytes.data(), count);
+  filled(count);
+  return count;
+}
+
+bool FrameParser::inside_message() const {
+  return open_.has_value() || end_ > begin_;
+}
+
+}  // namespace counterpart

@@ -1,0 +1,48 @@
+// Bytes as they come from a stream → whole messages. Knows no sockets and no clock.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "protocol/framing/header.hpp"
+
+namespace counterpart {
+
+struct RawMessage {
+  Header header;
+  HeaderBytes header_bytes{};
+  Bytes body;
+};
+
+// The stream reader: give it room to read into, tell it how much came, take the messages out.
+// After the first failure it stays failed: there is no safe way to find the next message.
+class FrameParser {
+ public:
+  // Where the next bytes of the stream go; never empty. Bodies are read straight into their own memory, which is taken
+  // only after magic and length were checked.
+  std::span<std::uint8_t> room();
+
+  // `count` bytes of room() were filled.
+  void filled(std::size_t count);
+
+  // The next whole message; empty: more bytes are needed.
+  [[nodiscard]] Result<std::optional<RawMessage>> next();
+
+  // Copies bytes in and hands out nothing: for tests, files and memory links. next() must be called until empty first
+  // and then again for every part that did not fit; returns how many bytes were taken.
+  std::size_t feed(ByteView bytes);
+
+  // True while a message has begun and is not complete.
+  bool inside_message() const;
+
+ private:
+  Bytes buffer_ = Bytes(kBufferSize);
+  std::size_t begin_ = 0, end_ = 0;  // of the unread bytes in buffer_
+  std::optional<RawMessage> open_;   // header read, body on its way
+  std::size_t body_have_ = 0;
+  std::optional<Error> failed_;
+
+  static constexpr std::size_t kBufferSize = 64U << 10;
+};
+
+}  // namespace counterpart

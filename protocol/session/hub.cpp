@@ -1,0 +1,384 @@
+#include "protocol/session/hub.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "protocol/codec/codec.hpp"
+
+namespace counterpart {
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr std::int64_t kHandshakeLimit = 3 * kSecond;
+constexpr std::int64_t kMessageLimit = 10 * kSecond;
+constexpr std::int64_t kClosingLimit = kSecond;
+constexpr std::int64_t kSessionLimit = 60 * kSecond;
+constexpr std::int64_t kFirstWait = kSecond / 20;
+constexpr std::int64_t kLongestWait = 2 * kSecond;
+constexpr std::int64_t kClockBurst = 8;
+constexpr std::size_t kMostConnections = 64;
+constexpr std::size_t kMostAway = 64;
+constexpr std::size_t kMostUrgent = 256;
+constexpr std::size_t kMostInbound = 16384;
+constexpr std::size_t kMostInboundBytes = 64U << 20;
+
+}  // namespace
+
+Hub::Hub(End end, LinkOptions options, std::string token, WireTap* tap)
+    : end_(end), options_(std::move(options)), token_(std::move(token)), tap_(tap) {}
+
+// --- connections -------------------------------------------------------------------------------------------------
+
+ConnectionId Hub::add_connection(std::int64_t now_ns) {
+  const ConnectionId id = ++last_connection_;
+  Connection& connection = connections_[id];
+  connection.opened_ns = now_ns;
+  connection.last_read_ns = now_ns;
+  return id;
+}
+
+std::optional<ConnectionId> Hub::accepted(std::int64_t now_ns) {
+  if (connections_.size() >= kMostConnections) return std::nullopt;
+  return add_connection(now_ns);
+}
+
+WireMessage Hub::refusal(std::int64_t now_ns) const {
+  const auto body = encode(ErrorReport{static_cast<std::uint16_t>(ErrorCode::unavailable),
+                                       "there are already " + std::to_string(kMostConnections) + " connections"});
+  WireMessage message;
+  message.body = std::make_shared<const Bytes>(*body);
+  Header header;
+  header.type = static_cast<std::uint16_t>(MessageType::error);
+  header.time_ns = now_ns;
+  message.header = seal(header, *message.body);
+  return message;
+}
+
+std::optional<Hub::LaneName> Hub::wants_to_dial(std::int64_t now_ns) {
+  if (end_ != End::client) return std::nullopt;
+  if (!main_dial_.busy && main_dial_.next_ns <= now_ns) {
+    main_dial_.busy = true;
+    return LaneName::main;
+  }
+  const auto peer = peers_.find(server_peer_);
+  const bool open = peer != peers_.end() && peer->second.main_connection != 0;
+  if (open && options_.want_video && !video_dial_.busy && video_dial_.next_ns <= now_ns) {
+    video_dial_.busy = true;
+    return LaneName::video;
+  }
+  return std::nullopt;
+}
+
+ConnectionId Hub::dialled(LaneName lane, std::int64_t now_ns) {
+  const ConnectionId id = add_connection(now_ns);
+  Connection& connection = connections_.at(id);
+  connection.lane = lane;
+  begin_hello(id, connection, now_ns);
+  return id;
+}
+
+void Hub::dial_failed(LaneName lane, const Error& why, std::int64_t now_ns) {
+  try_again_later(lane == LaneName::main ? main_dial_ : video_dial_, now_ns);
+  if (lane == LaneName::main) note_refusal(why);
+}
+
+void Hub::try_again_later(Dial& dial, std::int64_t now_ns) {
+  dial.busy = false;
+  dial.wait_ns = std::clamp(dial.wait_ns * 8 / 5, kFirstWait, kLongestWait);
+  dial.next_ns = now_ns + dial.wait_ns;
+}
+
+void Hub::note_refusal(const Error& why) {
+  last_refusal_ = why;
+  if (why.message == last_reported_refusal_) return;
+  last_reported_refusal_ = why.message;
+  inbound_.push_back(PeerLeft{0, why});
+}
+
+FrameParser& Hub::parser(ConnectionId connection) {
+  return connections_.at(connection).parser;
+}
+
+std::vector<ConnectionId> Hub::connections() const {
+  std::vector<ConnectionId> ids;
+  for (const auto& [id, connection] : connections_) ids.push_back(id);
+  return ids;
+}
+
+Hub::Peer* Hub::peer_of(const Connection& connection) {
+  const auto peer = peers_.find(connection.peer);
+  return peer == peers_.end() ? nullptr : &peer->second;
+}
+
+void Hub::say(Connection& connection, const Message& message) {
+  if (connection.urgent.size() >= kMostUrgent) return;  // a peer that asks and never reads gets no answers
+  const auto body = encode(message);
+  if (!body) return;  // only messages made here come this way, and those are well-formed
+  Outgoing outgoing;
+  outgoing.type = type_of(message);
+  outgoing.body = std::make_shared<const Bytes>(*body);
+  connection.urgent.push_back(std::move(outgoing));
+}
+
+void Hub::fail(ConnectionId id, Connection& connection, const Error& error, std::int64_t now_ns) {
+  if (connection.stage == Stage::closing) return;
+  connection.urgent.clear();
+  say(connection, ErrorReport{static_cast<std::uint16_t>(error.code), error.message.substr(0, 1000)});
+  detach(id, connection, error, now_ns);
+  connection.stage = Stage::closing;
+  connection.closing_since_ns = now_ns;
+}
+
+// The connection no longer carries its session; the session waits for another one.
+void Hub::detach(ConnectionId id, Connection& connection, const Error& why, std::int64_t now_ns) {
+  const bool was_open = connection.stage == Stage::open;
+  if (connection.stage == Stage::closing) return;
+  Peer* peer = peer_of(connection);
+  connection.peer = 0;
+  const bool main = connection.lane == LaneName::main;
+  if (end_ == End::client) {
+    try_again_later(main ? main_dial_ : video_dial_, now_ns);
+    if (main && !was_open) note_refusal(why);
+  }
+  if (peer == nullptr) return;
+  ConnectionId& slot = main ? peer->main_connection : peer->video_connection;
+  if (slot != id) return;
+  slot = 0;
+  if (!main) return;
+  peer->away_since_ns = now_ns;
+  inbound_.push_back(PeerLeft{peer->id, why});
+  if (peer->video_connection != 0) drop(peer->video_connection, why, now_ns);
+}
+
+// Ends a connection without a word.
+void Hub::drop(ConnectionId id, const Error& why, std::int64_t now_ns) {
+  const auto found = connections_.find(id);
+  if (found == connections_.end()) return;
+  detach(id, found->second, why, now_ns);
+  found->second.stage = Stage::closing;
+  found->second.urgent.clear();
+  found->second.closing_since_ns = now_ns;
+}
+
+void Hub::closed(ConnectionId id, const Error& why, std::int64_t now_ns) {
+  const auto found = connections_.find(id);
+  if (found == connections_.end()) return;
+  detach(id, found->second, why, now_ns);
+  connections_.erase(found);
+}
+
+void Hub::forget_peer(PeerId id) {
+  const auto found = peers_.find(id);
+  if (found == peers_.end()) return;
+  sessions_.erase(found->second.session);
+  if (server_peer_ == id) server_peer_ = 0;
+  peers_.erase(found);
+}
+
+// The session is over and will not be resumed.
+void Hub::end_session(Peer& peer, const Error& why, std::int64_t now_ns) {
+  const PeerId id = peer.id;
+  const ConnectionId main = peer.main_connection;
+  const ConnectionId video = peer.video_connection;
+  if (const auto found = connections_.find(main); found != connections_.end()) {
+    fail(main, found->second, why, now_ns);
+  } else {
+    inbound_.push_back(PeerLeft{id, why});
+  }
+  drop(video, why, now_ns);
+  forget_peer(id);
+}
+
+// --- writing -----------------------------------------------------------------------------------------------------
+
+std::optional<WireMessage> Hub::next_to_write(ConnectionId id, std::int64_t now_ns) {
+  const auto found = connections_.find(id);
+  if (found == connections_.end()) return std::nullopt;
+  Connection& connection = found->second;
+  Peer* peer = peer_of(connection);
+  std::optional<Outgoing> next;
+  if (!connection.urgent.empty()) {
+    next = std::move(connection.urgent.front());
+    connection.urgent.pop_front();
+  } else if (connection.stage == Stage::open && peer != nullptr) {
+    Lane& lane = lane_of(*peer, connection.lane);
+    if (std::exchange(connection.acknowledge, false)) {
+      say(connection, Acknowledge{lane.last_received()});
+      return next_to_write(id, now_ns);
+    }
+    next = lane.take();
+  }
+  if (!next) return std::nullopt;
+  Header header;
+  header.type = static_cast<std::uint16_t>(next->type);
+  header.type_version = kTypeVersion;
+  header.flags = next->seq != 0 ? kFlagKept : 0;
+  header.session = peer != nullptr ? peer->session : 0;
+  header.seq = next->seq;
+  header.frame_id = next->frame_id;
+  header.time_ns = now_ns;
+  WireMessage message{seal(header, *next->body), next->body};
+  if (peer != nullptr) {
+    ++peer->counts.sent;
+    peer->counts.bytes_sent += kHeaderSize + message.body->size();
+  }
+  if (tap_ != nullptr) {
+    tap_->saw(false, connection.lane == LaneName::video, connection.peer, message.header, *message.body, now_ns);
+  }
+  return message;
+}
+
+bool Hub::finished(ConnectionId id) const {
+  const auto found = connections_.find(id);
+  return found == connections_.end() || (found->second.stage == Stage::closing && found->second.urgent.empty());
+}
+
+bool Hub::overdue(ConnectionId id, std::int64_t now_ns) const {
+  const auto found = connections_.find(id);
+  return found != connections_.end() && found->second.stage == Stage::closing &&
+         now_ns - found->second.closing_since_ns > kClosingLimit;
+}
+
+// --- time --------------------------------------------------------------------------------------------------------
+
+void Hub::tick(std::int64_t now_ns) {
+  for (const ConnectionId id : connections()) {
+    if (const auto found = connections_.find(id); found != connections_.end()) tick(id, found->second, now_ns);
+  }
+  forget_the_long_gone(now_ns);
+}
+
+void Hub::tick(ConnectionId id, Connection& connection, std::int64_t now_ns) {
+  if (connection.stage == Stage::closing) return;
+  if (connection.stage != Stage::open) {
+    if (now_ns - connection.opened_ns < kHandshakeLimit) return;
+    return fail(id, connection, {ErrorCode::timeout, "the peer did not open the session within 3 s"}, now_ns);
+  }
+  if (inbound_full()) connection.last_read_ns = now_ns;  // it is we who do not listen
+  if (now_ns - connection.last_read_ns >= options_.dead_after_ns) {
+    return fail(id, connection,
+                {ErrorCode::timeout, "nothing came from the peer for too long: it is dead or the link is cut"}, now_ns);
+  }
+  if (connection.message_began_ns >= 0 && now_ns - connection.message_began_ns >= kMessageLimit && !inbound_full()) {
+    return fail(id, connection, {ErrorCode::timeout, "half a message came and the rest did not follow"}, now_ns);
+  }
+  Peer* peer = peer_of(connection);
+  if (peer == nullptr) return;
+  const Lane& lane = lane_of(*peer, connection.lane);
+  if (now_ns >= connection.next_heartbeat_ns) {
+    say(connection, Heartbeat{lane.queued(), lane.dropped()});
+    connection.next_heartbeat_ns = now_ns + options_.heartbeat_ns;
+  }
+  if (connection.lane == LaneName::main && now_ns >= connection.next_clock_ns) {
+    say(connection, ClockRequest{now_ns});
+    connection.next_clock_ns = now_ns + (++connection.clock_requests < kClockBurst ? kSecond / 50 : kSecond);
+  }
+}
+
+void Hub::forget_the_long_gone(std::int64_t now_ns) {
+  if (end_ == End::client) return;
+  std::vector<std::pair<std::int64_t, PeerId>> away;
+  for (const auto& [id, peer] : peers_) {
+    if (peer.main_connection == 0) away.emplace_back(peer.away_since_ns, id);
+  }
+  std::sort(away.begin(), away.end());
+  std::size_t too_many = away.size() > kMostAway ? away.size() - kMostAway : 0;
+  for (const auto& [since_ns, id] : away) {
+    if (too_many == 0 && now_ns - since_ns < kSessionLimit) break;
+    if (too_many > 0) --too_many;
+    forget_peer(id);
+  }
+}
+
+std::int64_t Hub::next_tick(std::int64_t now_ns) const {
+  std::int64_t next = now_ns + kSecond;
+  const auto sooner = [&](std::int64_t when_ns) { next = std::min(next, std::max(when_ns, now_ns)); };
+  for (const auto& [id, connection] : connections_) {
+    if (connection.stage == Stage::closing) {
+      sooner(connection.closing_since_ns + kClosingLimit + 1);
+    } else if (connection.stage != Stage::open) {
+      sooner(connection.opened_ns + kHandshakeLimit);
+    } else {
+      sooner(connection.next_heartbeat_ns);
+      sooner(connection.last_read_ns + options_.dead_after_ns);
+      if (connection.lane == LaneName::main) sooner(connection.next_clock_ns);
+      if (connection.message_began_ns >= 0) sooner(connection.message_began_ns + kMessageLimit);
+    }
+  }
+  if (end_ == End::client) {
+    if (!main_dial_.busy) sooner(main_dial_.next_ns);
+    const auto peer = peers_.find(server_peer_);
+    const bool open = peer != peers_.end() && peer->second.main_connection != 0;
+    if (open && options_.want_video && !video_dial_.busy) sooner(video_dial_.next_ns);
+  }
+  return next;
+}
+
+void Hub::leave(std::int64_t now_ns) {
+  for (auto& [id, connection] : connections_) {
+    if (connection.stage == Stage::open) say(connection, Bye{options_.software + " has ended"});
+    connection.stage = Stage::closing;
+    connection.closing_since_ns = now_ns;
+  }
+}
+
+// --- the program's side ------------------------------------------------------------------------------------------
+
+void Hub::send(PeerId peer, const Outgoing& message, std::int64_t now_ns) {
+  if (const auto found = peers_.find(peer); found != peers_.end()) push(found->second, message, now_ns);
+}
+
+void Hub::broadcast(const Outgoing& message, std::int64_t now_ns) {
+  std::vector<PeerId> ids;
+  for (const auto& [id, peer] : peers_) ids.push_back(id);
+  for (const PeerId id : ids) send(id, message, now_ns);
+}
+
+void Hub::push(Peer& peer, const Outgoing& message, std::int64_t now_ns) {
+  const bool video = message.type == MessageType::video;
+  if (video && !peer.want_video) return;
+  Lane& lane = lane_of(peer, video ? LaneName::video : LaneName::main);
+  lane.push(message);
+  if (!lane.overflowed()) return;
+  end_session(peer, {ErrorCode::limit_exceeded, "too many messages wait for a peer that does not take them"}, now_ns);
+}
+
+void Hub::report(PeerId peer, const Error& error, std::int64_t now_ns) {
+  inbound_.push_back(Received{peer, ErrorReport{static_cast<std::uint16_t>(error.code), error.message}, now_ns});
+}
+
+std::vector<Inbound> Hub::take_inbound() {
+  std::vector<Inbound> taken(std::make_move_iterator(inbound_.begin()), std::make_move_iterator(inbound_.end()));
+  inbound_.clear();
+  inbound_bytes_ = 0;
+  for (auto& [id, peer] : peers_) peer.pictures_waiting = 0;
+  return taken;
+}
+
+bool Hub::inbound_full() const {
+  return inbound_.size() >= kMostInbound || inbound_bytes_ >= kMostInboundBytes;
+}
+
+bool Hub::wants_read(ConnectionId id) const {
+  const auto found = connections_.find(id);
+  return found != connections_.end() && found->second.stage != Stage::closing && !inbound_full();
+}
+
+std::vector<PeerStats> Hub::stats(std::int64_t now_ns) const {
+  std::vector<PeerStats> all;
+  for (const auto& [id, peer] : peers_) {
+    PeerStats stats = peer.counts;
+    stats.dropped += peer.main.dropped() + peer.video.dropped();
+    stats.queued = peer.main.queued() + peer.video.queued();
+    stats.unacknowledged = peer.main.unacknowledged() + peer.video.unacknowledged();
+    const ClockOffset clock = peer.clock.at(now_ns);
+    stats.clock_offset_ns = clock.offset_ns;
+    stats.clock_bound_ns = clock.bound_ns;
+    stats.round_trip_ns = clock.round_trip_ns;
+    all.push_back(stats);
+  }
+  return all;
+}
+
+}  // namespace counterpart

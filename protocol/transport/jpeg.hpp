@@ -1,0 +1,14 @@
+// Pictures on the wire, raw or compressed.
+#pragma once
+
+#include "protocol/vocabulary/result.hpp"
+#include "protocol/vocabulary/video.hpp"
+
+namespace counterpart {
+
+constexpr int kJpegQuality = 92;  // 4:2:0; 100-170 kB at 720x576
+
+// The same picture in this codec; a picture that is already in it is copied.
+[[nodiscard]] Result<VideoFrame> convert(const VideoFrame& frame, PixelCodec codec);
+
+}  // namespace counterpart

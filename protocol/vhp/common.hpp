@@ -1,0 +1,37 @@
+// What the subcommands of vhp share.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "protocol/transport/endpoint.hpp"
+
+namespace counterpart::vhp {
+
+// Exit codes of every program here.
+constexpr int kFine = 0;
+constexpr int kFailed = 1;
+constexpr int kWrongUsage = 2;
+
+// Options that every subcommand with a link has.
+struct LinkArguments {
+  std::string address;
+  std::string token_file;
+  double patience_s = 3;  // how long to wait for the peer
+};
+
+// Ctrl-C and SIGTERM set a flag instead of killing the program.
+void catch_interrupts();
+bool interrupted();
+
+std::int64_t monotonic_ns();
+
+// Writes "vhp: ..." to stderr; returns kFailed.
+int fail(const Error& error);
+
+// Connects and waits for the session.
+[[nodiscard]] Result<std::unique_ptr<Endpoint>> open_link(const LinkArguments& arguments, Role role, bool want_video,
+                                                          const std::string& record_file = "");
+
+}  // namespace counterpart::vhp

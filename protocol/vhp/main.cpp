@@ -1,0 +1,25 @@
+// vhp: watches, scripts, records and replays the protocol between tracker and renderer.
+#include <CLI/CLI.hpp>
+
+#include "protocol/vhp/commands.hpp"
+#include "protocol/vhp/common.hpp"
+
+int main(int argc, char** argv) {
+  using namespace counterpart::vhp;
+  CLI::App app("Watches, scripts, records and replays the link between tracker and renderer.", "vhp");
+  app.set_version_flag("--version", "vhp " COUNTERPART_VERSION);
+  app.require_subcommand(1);
+  int exit_code = kFine;
+  add_monitor(app, exit_code);
+  add_send(app, exit_code);
+  add_record(app, exit_code);
+  add_replay(app, exit_code);
+  add_capture(app, exit_code);
+  catch_interrupts();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kFine : kWrongUsage;
+  }
+  return exit_code;
+}

@@ -1,0 +1,83 @@
+#include "stage/film/hidden.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "stage/room/arm.hpp"
+
+namespace counterpart::stage {
+namespace {
+
+// Does the capsule come between the two points? Steps along the segment, nearer than the capsule's surface each time.
+bool blocks(const Capsule& capsule, const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
+  const Eigen::Vector3f way = to - from;
+  const float length = way.norm();
+  float gone = 0;
+  while (gone < length) {
+    const float distance = distance_m(capsule, from + way * (gone / length));
+    if (distance < 5e-4f) return true;
+    gone += std::max(distance, 1e-3f);
+  }
+  return false;
+}
+
+bool behind_piece(const World& world, const Eigen::Vector3d& eye, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d up = eye - point;
+  for (const RealPiece& piece : world.pieces) {
+    const double height = world.board.piece_height_m * (piece.king ? 2 : 1);
+    // The part of the line of sight between the piece's foot and its top, as a segment seen from above.
+    const double low = std::clamp((piece.p_B.z() - point.z()) / up.z(), 0.0, 1.0);
+    const double high = std::clamp((piece.p_B.z() + height - point.z()) / up.z(), 0.0, 1.0);
+    if (high <= low && !(piece.p_B.z() <= point.z() && low == 0)) continue;
+    const Eigen::Vector2d a = (point + low * up).head<2>() - piece.p_B.head<2>();
+    const Eigen::Vector2d d = (high - low) * up.head<2>();
+    const double t = d.squaredNorm() > 0 ? std::clamp(-a.dot(d) / d.squaredNorm(), 0.0, 1.0) : 0.0;
+    if ((a + t * d).norm() < world.board.piece_radius_m) return true;
+  }
+  return false;
+}
+
+bool outside(const View& view, const Eigen::Vector3d& point) {
+  if ((view.X_CB * point).z() <= kNear_m) return true;
+  const Eigen::Vector2d at = project(view, point);
+  return !(at.x() >= 0 && at.y() >= 0 && at.x() <= view.intrinsics.width - 1 && at.y() <= view.intrinsics.height - 1);
+}
+
+}  // namespace
+
+Hidden hidden_shares(const World& world, const View& view) {
+  std::vector<Capsule> arm;
+  if (world.player_present) {
+    arm = arm_capsules(arm_for(world.hand.pinch_B), static_cast<float>(world.board.piece_radius_m));
+  }
+  const Eigen::Vector3d eye = camera_position_B(view);
+  const auto behind_arm = [&](const Eigen::Vector3d& point) {
+    return std::any_of(arm.begin(), arm.end(),
+                       [&](const Capsule& c) { return blocks(c, eye.cast<float>(), point.cast<float>()); });
+  };
+  const int n = world.board.squares;
+  const double size = world.board.square_size_m;
+  const double half = n * size / 2;
+  Hidden hidden;
+  for (int row = 0; row < 2 * n; ++row) {
+    for (int col = 0; col < 2 * n; ++col) {
+      const Eigen::Vector3d point((col + 0.5) * size / 2 - half, (row + 0.5) * size / 2 - half, 0);
+      hidden.surface_by_arm += behind_arm(point) ? 1.0 / (4 * n * n) : 0;
+    }
+  }
+  constexpr int kSamplesASquare = 3;
+  const int along = kSamplesASquare * n;
+  for (int line = 0; line <= n; ++line) {
+    for (int i = 0; i < along; ++i) {
+      const double s = (i + 0.5) * 2 * half / along - half;
+      const double at = line * size - half;
+      for (const Eigen::Vector3d& point : {Eigen::Vector3d(s, at, 0), Eigen::Vector3d(at, s, 0)}) {
+        const bool unseen = outside(view, point) || behind_piece(world, eye, point) || behind_arm(point);
+        hidden.edges += unseen ? 1.0 / (2 * along * (n + 1)) : 0;
+      }
+    }
+  }
+  return hidden;
+}
+
+}  // namespace counterpart::stage

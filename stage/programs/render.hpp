@@ -1,0 +1,23 @@
+// `stage render`: a scenario as a folder of pictures.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "protocol/vocabulary/result.hpp"
+
+namespace counterpart::stage {
+
+struct RenderOptions {
+  std::string scenario;
+  std::string out;
+  std::optional<std::uint64_t> seed;
+  std::optional<int> frames;
+  bool masks = false;
+};
+
+[[nodiscard]] Result<void> run_render(const RenderOptions& options, const std::atomic<bool>& interrupted);
+
+}  // namespace counterpart::stage

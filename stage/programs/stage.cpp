@@ -1,0 +1,64 @@
+// The program `stage`: a simulated room with a camera, a board and a real player.
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+
+#include <CLI/CLI.hpp>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "stage/programs/render.hpp"
+#include "stage/programs/serve.hpp"
+
+namespace {
+
+std::atomic<bool> interrupted{false};
+
+void on_signal(int) {
+  interrupted = true;
+}
+
+int finish(const counterpart::Result<void>& result) {
+  if (result) return 0;
+  spdlog::error("{}", result.error().message);
+  return 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace counterpart::stage;
+  spdlog::set_default_logger(spdlog::stderr_logger_mt("stage"));
+  spdlog::set_pattern("%H:%M:%S.%e %n %l: %v");
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+
+  CLI::App app("A simulated room: a camera, a board, a real player, and the exact truth about them.");
+  app.set_version_flag("--version", std::string("stage ") + COUNTERPART_VERSION);
+  app.require_subcommand(1);
+
+  RenderOptions render;
+  CLI::App* render_command = app.add_subcommand("render", "Write a scenario as pictures with their truth");
+  render_command->add_option("scenario", render.scenario, "JSON file, see stage/scenarios")->required();
+  render_command->add_option("--out", render.out, "Folder to make")->required();
+  render_command->add_option("--seed", render.seed, "Instead of the scenario's");
+  render_command->add_option("--frames", render.frames, "Instead of the scenario's")->check(CLI::PositiveNumber);
+  render_command->add_flag("--masks", render.masks, "Also mask_%05d.png: where the player's arm is seen");
+
+  ServeOptions serve;
+  CLI::App* serve_command = app.add_subcommand("serve", "Be a camera for a tracker, and the player in front of it");
+  serve_command->add_option("--listen", serve.listen, "HOST:PORT")->capture_default_str();
+  serve_command->add_option("--scenario", serve.scenario, "JSON file; without it a game at a plain table");
+  serve_command->add_option("--frames", serve.frames, "Stop after so many; 0: until stopped")->capture_default_str();
+  serve_command->add_option("--truth", serve.truth, "Write a line of JSON a frame to this file");
+  serve_command->add_option("--token", serve.token_file, "File with the secret; needed to listen beyond loopback");
+  serve_command->add_option("--seed", serve.seed, "Instead of the scenario's");
+  serve_command->add_flag("--lockstep", serve.lockstep, "Next frame only when the last one is done; no clock");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  return finish(*render_command ? run_render(render, interrupted) : run_serve(serve, interrupted));
+}

@@ -1,0 +1,40 @@
+// The simulated room: everything that a camera sees of it, drawn for one moment.
+#pragma once
+
+#include <memory>
+
+#include <opencv2/core/mat.hpp>
+
+#include "protocol/vocabulary/result.hpp"
+#include "stage/player/world.hpp"
+#include "vhd_renderer/draw/renderer.hpp"
+
+namespace counterpart::stage {
+
+struct RoomOptions {
+  int width = 720;
+  int height = 576;
+  BoardGeometry board;
+  Eigen::Vector3f light_direction_B{-0.45f, 0.25f, 0.85f};
+  float light = 1.0f;    // 1: a bright day; 0: dark
+  std::uint64_t seed = 1;  // of the grain of the wood
+};
+
+class Room {
+ public:
+  [[nodiscard]] static Result<std::unique_ptr<Room>> furnish(const RoomOptions& options);
+  ~Room();
+
+  // A clean picture without noise or blur, CV_8UC3.
+  cv::Mat picture(const World& world, const View& view);
+
+  // CV_8UC1: 255 where the player's arm is seen.
+  cv::Mat arm_mask(const World& world, const View& view);
+
+ private:
+  struct State;
+  explicit Room(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace counterpart::stage

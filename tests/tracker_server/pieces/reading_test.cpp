@@ -1,0 +1,149 @@
+// Both ways of reading the squares, against pictures whose pieces are known.
+#include <map>
+#include <numbers>
+
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+#include "tests/tracker_server/support/board_picture.hpp"
+#include "tracker_server/pieces/appearance.hpp"
+#include "tracker_server/pieces/piece_reader.hpp"
+#include "tracker_server/pieces/scan_segments.hpp"
+#include "tracker_server/pose/projection.hpp"
+
+namespace counterpart {
+namespace {
+
+using test::BoardScene;
+
+constexpr double degree = std::numbers::pi / 180;
+
+BoardScene game_scene() {
+  BoardScene scene;
+  scene.camera = test::camera_720x576();
+  scene.X_CB = test::looking_at_board(0.75, 52 * degree, 10 * degree);
+  return scene;
+}
+
+BoardToPixel to_pixel(const BoardScene& scene) {
+  const double D = scene.board.square_size_m, half = 0.5 * scene.board.squares * D;
+  return [scene, D, half](double column, double row) -> Eigen::Vector2d {
+    return project(scene.camera, scene.X_CB * Eigen::Vector3d(column * D - half, half - row * D, 0));
+  };
+}
+
+std::map<int, CellReading> truth(const BoardScene& scene) {
+  std::map<int, CellReading> readings;
+  for (const auto& piece : scene.pieces)
+    readings[piece.cell.row * scene.board.squares + piece.cell.col] =
+        piece.colour_bgr[1] < 128 ? CellReading::dark : CellReading::light;
+  return readings;
+}
+
+int wrong_cells(const BoardScene& scene, const std::vector<CellSight>& cells) {
+  const auto readings = truth(scene);
+  int wrong = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto there = readings.find(static_cast<int>(i));
+    wrong += cells[i].reading != (there == readings.end() ? CellReading::empty : there->second);
+  }
+  return wrong;
+}
+
+TEST(Appearance, ReadsTheStartPosition) {
+  BoardScene scene = game_scene();
+  scene.pieces = test::start_position(scene.board);
+  const BoardView view = view_board(test::paint(scene, 2), 10, to_pixel(scene));
+  EXPECT_EQ(wrong_cells(scene, read_appearance(look_at_cells(view), 10, 1).cells), 0);
+  EXPECT_EQ(read_appearance(look_at_cells(view), 10, std::nullopt).look.playable_parity, 1);
+}
+
+TEST(Appearance, ReadsDarkPiecesOnDarkSquares) {
+  BoardScene scene = game_scene();
+  for (int square : {3, 7, 18, 22, 31, 44}) scene.pieces.push_back({cell_of_square(square, 10), {38, 55, 80}});
+  const BoardView view = view_board(test::paint(scene, 2), 10, to_pixel(scene));
+  EXPECT_EQ(wrong_cells(scene, read_appearance(look_at_cells(view), 10, 1).cells), 0);
+}
+
+TEST(Appearance, AnEmptyBoardIsEmpty) {
+  const BoardScene scene = game_scene();
+  const BoardView view = view_board(test::paint(scene, 2), 10, to_pixel(scene));
+  EXPECT_EQ(wrong_cells(scene, read_appearance(look_at_cells(view), 10, 1).cells), 0);
+}
+
+TEST(ScanSegments, ReadsDarkPiecesOnLightSquares) {
+  BoardScene scene = game_scene();
+  scene.board.played_on = SquareColour::light;
+  for (int square : {1, 6, 12, 23, 28, 39, 50}) scene.pieces.push_back({cell_of_square(square, 10)});
+  cv::Mat1b grey;
+  cv::cvtColor(test::paint(scene, 2), grey, cv::COLOR_BGR2GRAY);
+  const auto values = scan_values(grey, 10, to_pixel(scene));
+  const auto threshold = scan_threshold(values, 10, "");
+  ASSERT_TRUE(threshold);
+  EXPECT_EQ(wrong_cells(scene, read_scan(values, 10, *threshold, true)), 0);
+}
+
+TEST(ScanSegments, AKnownSetUpGivesTheThreshold) {
+  std::vector<double> values(100, 200);
+  std::string expected(50, 'e');
+  for (int square : {1, 2, 3, 4}) {
+    const Cell cell = cell_of_square(square, 10);
+    values[static_cast<std::size_t>(cell.row * 10 + cell.col)] = 100;
+    expected[static_cast<std::size_t>(square - 1)] = 'b';
+  }
+  EXPECT_DOUBLE_EQ(*scan_threshold(values, 10, expected), 150);
+}
+
+TEST(PieceReader, BelievesOnlyWhatStays) {
+  BoardScene scene = game_scene();
+  scene.pieces = {{cell_of_square(20, 10)}, {cell_of_square(33, 10)}, {cell_of_square(41, 10)}};
+  const BoardView before = view_board(test::paint(scene, 2), 10, to_pixel(scene));
+  scene.pieces[0].cell = cell_of_square(25, 10);
+  const BoardView after = view_board(test::paint(scene, 2), 10, to_pixel(scene));
+
+  PieceReader reader(10);
+  FrameStamp stamp;
+  const auto next = [&](const BoardView& view) {
+    const auto reading = reader.read(view, stamp);
+    ++stamp.frame_id;
+    stamp.capture_ns += 40'000'000;
+    return reading.occupancy;
+  };
+  Occupancy seen;
+  for (int i = 0; i < 6; ++i) seen = next(before);
+  const Cell from = cell_of_square(20, 10), to = cell_of_square(25, 10);
+  const auto at = [&](Cell cell) { return seen.cells[static_cast<std::size_t>(cell.row * 10 + cell.col)].reading; };
+  EXPECT_EQ(at(from), CellReading::dark);
+  EXPECT_GT(seen.stable_ns, 0);
+  seen = next(after);
+  EXPECT_EQ(at(from), CellReading::dark) << "one picture is not believed";
+  for (int i = 0; i < 3; ++i) seen = next(after);
+  EXPECT_EQ(at(from), CellReading::empty);
+  EXPECT_EQ(at(to), CellReading::dark);
+}
+
+TEST(PieceReader, NothingIsGuessedUnderAHand) {
+  BoardScene scene = game_scene();
+  scene.pieces = {{cell_of_square(20, 10)}, {cell_of_square(33, 10)}};
+  PieceReader reader(10);
+  FrameStamp stamp;
+  const BoardView clear = view_board(test::paint(scene, 2), 10, to_pixel(scene));
+  for (int i = 0; i < 5; ++i) {
+    stamp.capture_ns += 40'000'000;
+    EXPECT_FALSE(reader.read(clear, stamp).occupancy.covered);
+  }
+  scene.before = [](int x, int y) -> std::optional<cv::Vec3b> {
+    if (x > 330 && x < 450 && y > 250) return cv::Vec3b(120, 150, 215);
+    return std::nullopt;
+  };
+  stamp.capture_ns += 40'000'000;
+  const auto reading = reader.read(view_board(test::paint(scene, 2), 10, to_pixel(scene)), stamp);
+  EXPECT_TRUE(reading.occupancy.covered);
+  EXPECT_EQ(reading.occupancy.stable_ns, 0);
+  int unknown = 0;
+  for (const auto& cell : reading.occupancy.cells) unknown += cell.reading == CellReading::unknown;
+  EXPECT_GT(unknown, 6);
+}
+
+}  // namespace
+}  // namespace counterpart

@@ -1,0 +1,95 @@
+#include "tracker_server/pipeline/observe.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "tests/tracker_server/support/board_picture.hpp"
+
+namespace counterpart {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+
+TEST(Observe, GivesPoseAndPiecesOfAGameBoard) {
+  test::BoardScene scene;
+  scene.camera = test::camera_720x576();
+  // From behind the dark side, as the real player sees it.
+  scene.X_CB = test::looking_at_board(0.75, 50 * degree, 190 * degree);
+  std::string real(50, 'e');
+  for (int square = 1; square <= 20; ++square) {
+    scene.pieces.push_back({cell_of_square(square, 10)});
+    real[static_cast<std::size_t>(square - 1)] = 'b';
+  }
+  ObserveOptions options;
+  options.intrinsics = scene.camera;
+  ObserveContext context(options);
+  context.expect(real);
+  Frame frame;
+  frame.image_bgr = test::paint(scene, 2);
+  Observation seen;
+  for (int i = 0; i < 12; ++i) {
+    frame.stamp = {static_cast<FrameId>(i), i * 40'000'000};
+    seen = observe(frame, context);
+    EXPECT_EQ(seen.pose.stamp, frame.stamp);
+  }
+  EXPECT_EQ(seen.pose.status, TrackStatus::ok);
+  EXPECT_LT(seen.pose.rms_px, 1);
+  EXPECT_GT(seen.pose.seen_share, 0.7);
+  EXPECT_GT(seen.pose.covariance[0], 0);
+  EXPECT_FALSE(seen.debug.lines.empty());
+  EXPECT_FALSE(seen.debug.points.empty());
+  for (const char* step : {"pyramid", "pose", "view", "pieces"}) EXPECT_TRUE(seen.step_ms.contains(step)) << step;
+  ASSERT_TRUE(seen.occupancy);
+  EXPECT_FALSE(seen.occupancy->covered);
+  EXPECT_GT(seen.occupancy->stable_ns, 0);
+  for (int square = 1; square <= 50; ++square) {
+    const Cell cell = cell_of_square(square, 10);
+    EXPECT_EQ(seen.occupancy->cells[static_cast<std::size_t>(cell.row * 10 + cell.col)].reading,
+              square <= 20 ? CellReading::dark : CellReading::empty)
+        << "square " << square;
+  }
+}
+
+TEST(Observe, TheExpectedPiecesTellWhichWayRoundTheBoardLies) {
+  test::BoardScene scene;
+  scene.camera = test::camera_720x576();
+  scene.X_CB = test::looking_at_board(0.75, 50 * degree, 10 * degree);  // from the light side: not the usual one
+  std::string real(50, 'e');
+  for (int square = 1; square <= 20; ++square) {
+    scene.pieces.push_back({cell_of_square(square, 10)});
+    real[static_cast<std::size_t>(square - 1)] = 'b';
+  }
+  ObserveOptions options;
+  options.intrinsics = scene.camera;
+  ObserveContext context(options);
+  context.expect(real);
+  Frame frame;
+  frame.image_bgr = test::paint(scene, 2);
+  Observation seen;
+  for (int i = 0; i < 24; ++i) {
+    frame.stamp = {static_cast<FrameId>(i), i * 40'000'000};
+    seen = observe(frame, context);
+  }
+  ASSERT_TRUE(seen.occupancy);
+  EXPECT_EQ(seen.occupancy->cells[1].reading, CellReading::dark) << "square 1";
+  EXPECT_EQ(seen.occupancy->cells[90].reading, CellReading::empty) << "square 46";
+}
+
+TEST(Observe, NoBoardIsLostAndReadsNothing) {
+  ObserveOptions options;
+  options.intrinsics = test::camera_720x576();
+  options.intrinsics->fx = std::numeric_limits<double>::quiet_NaN();
+  ObserveContext context(options);
+  Frame frame;
+  frame.image_bgr = cv::Mat(100, 120, CV_8UC3, cv::Scalar(10, 20, 30));
+  const Observation seen = observe(frame, context);
+  EXPECT_EQ(seen.pose.status, TrackStatus::lost);
+  EXPECT_FALSE(seen.occupancy);
+}
+
+}  // namespace
+}  // namespace counterpart

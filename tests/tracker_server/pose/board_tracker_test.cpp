@@ -1,0 +1,177 @@
+#include "tracker_server/pose/board_tracker.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "tests/tracker_server/support/board_picture.hpp"
+#include "tracker_server/pose/projection.hpp"
+
+namespace counterpart {
+namespace {
+
+using test::BoardScene;
+using test::farthest_crossing_px;
+using test::looking_at_board;
+
+constexpr double degree = std::numbers::pi / 180;
+constexpr std::int64_t frame_ns = 40'000'000;
+
+// The renderer averages 3 x 3 rays a pixel, which places edges within about 0.02 px; noise adds the rest.
+constexpr double exact_px = 0.15;
+
+BoardScene plain_scene() {
+  BoardScene scene;
+  scene.camera = test::camera_720x576();
+  scene.X_CB = looking_at_board(0.75, 50 * degree, 12 * degree, 3 * degree);
+  return scene;
+}
+
+BoardTrackerOptions options_for(const BoardScene& scene) {
+  BoardTrackerOptions options;
+  options.board = scene.board;
+  options.camera = scene.camera;
+  return options;
+}
+
+TrackedBoard see(BoardTracker& tracker, const cv::Mat& picture, int frame) {
+  return tracker.track(picture, build_pyramid(picture, 3), frame * frame_ns);
+}
+
+// The board's pattern is the same when turned by 180 degrees: either way round is right until pieces tell.
+double error_either_way_px(const BoardScene& scene, const TrackedBoard& seen) {
+  const Eigen::Isometry3d turned = scene.X_CB * Eigen::AngleAxisd(std::numbers::pi, Eigen::Vector3d::UnitZ());
+  return std::min(farthest_crossing_px(scene.board, scene.camera, scene.X_CB, seen.camera, seen.X_CB),
+                  farthest_crossing_px(scene.board, scene.camera, turned, seen.camera, seen.X_CB));
+}
+
+bool has_pose(const TrackedBoard& seen) {
+  return seen.status == TrackStatus::ok || seen.status == TrackStatus::relocalised;
+}
+
+TEST(BoardTracker, FindsThePoseUnaidedAndExactly) {
+  BoardScene scene = plain_scene();
+  scene.pieces = test::start_position(scene.board);
+  BoardTracker tracker(options_for(scene));
+  const TrackedBoard seen = see(tracker, test::paint(scene), 0);
+  ASSERT_TRUE(has_pose(seen));
+  EXPECT_LT(error_either_way_px(scene, seen), 2 * exact_px) << "the pieces' feet lie near the lines";
+  EXPECT_LT(std::abs(seen.X_CB.translation().norm() - scene.X_CB.translation().norm()), 0.0008);
+}
+
+TEST(BoardTracker, FollowsAMovingCamera) {
+  BoardScene scene = plain_scene();
+  BoardTracker tracker(options_for(scene));
+  for (int frame = 0; frame < 5; ++frame) {
+    scene.X_CB = looking_at_board(0.75 + 0.01 * frame, (50 - frame) * degree, (12 + 2.0 * frame) * degree);
+    scene.seed = static_cast<unsigned>(frame);
+    const TrackedBoard seen = see(tracker, test::paint(scene), frame);
+    ASSERT_TRUE(has_pose(seen)) << "frame " << frame;
+    EXPECT_LT(error_either_way_px(scene, seen), exact_px) << "frame " << frame;
+  }
+}
+
+TEST(BoardTracker, HoldsOnWhenTwoThirdsAreHidden) {
+  BoardScene scene = plain_scene();
+  BoardTracker tracker(options_for(scene));
+  ASSERT_TRUE(has_pose(see(tracker, test::paint(scene), 0)));
+  scene.before = [](int x, int y) -> std::optional<cv::Vec3b> {
+    if (x + y / 3 < 500) return cv::Vec3b(110, 130, 180);
+    return std::nullopt;
+  };
+  const TrackedBoard seen = see(tracker, test::paint(scene, 2), 1);
+  ASSERT_TRUE(has_pose(seen));
+  EXPECT_LT(seen.fit.share(), 0.5);
+  EXPECT_LT(error_either_way_px(scene, seen), 1.5);
+}
+
+TEST(BoardTracker, SaysThatItIsLostAndComesBackByItself) {
+  BoardScene scene = plain_scene();
+  BoardTracker tracker(options_for(scene));
+  const cv::Mat picture = test::paint(scene, 2);
+  ASSERT_TRUE(has_pose(see(tracker, picture, 0)));
+  ASSERT_EQ(see(tracker, picture, 1).status, TrackStatus::ok);
+
+  cv::Mat nothing(picture.size(), CV_8UC3, cv::Scalar(90, 100, 110));
+  for (int frame = 2; frame < 4; ++frame) EXPECT_EQ(see(tracker, nothing, frame).status, TrackStatus::coasting);
+  EXPECT_EQ(see(tracker, nothing, 4).status, TrackStatus::lost);
+
+  const TrackedBoard seen = see(tracker, picture, 5);
+  EXPECT_EQ(seen.status, TrackStatus::relocalised);
+  EXPECT_LT(error_either_way_px(scene, seen), exact_px);
+}
+
+TEST(BoardTracker, IsNeverOneSquareOffAfterAJump) {
+  BoardScene scene = plain_scene();
+  BoardTracker tracker(options_for(scene));
+  ASSERT_TRUE(has_pose(see(tracker, test::paint(scene, 2), 0)));
+  // Jumps of one and two squares, along and across: just where the next lines of the same colours lie.
+  int frame = 1;
+  for (const auto& [dx, dy] : {std::pair{1, 1}, {-2, 0}, {2, -1}}) {
+    const Eigen::Isometry3d before = scene.X_CB;
+    scene.X_CB = before * Eigen::Translation3d(0.04 * dx, 0.04 * dy, 0);
+    const TrackedBoard seen = see(tracker, test::paint(scene, 2), frame++);
+    if (has_pose(seen)) {
+      EXPECT_LT(error_either_way_px(scene, seen), 1) << "jump " << dx << ", " << dy;
+    }
+  }
+}
+
+TEST(BoardTracker, EstimatesAnUnknownFocalLength) {
+  BoardScene scene = plain_scene();
+  BoardTrackerOptions options = options_for(scene);
+  options.camera.reset();
+  BoardTracker tracker(options);
+  TrackedBoard seen;
+  for (int frame = 0; frame < 4; ++frame) {
+    scene.X_CB = looking_at_board(0.7, (40 + 3 * frame) * degree, 0.3);
+    scene.seed = static_cast<unsigned>(frame);
+    seen = see(tracker, test::paint(scene, 2), frame);
+    ASSERT_TRUE(has_pose(seen));
+  }
+  EXPECT_NEAR(seen.camera.fx, scene.camera.fx, 0.02 * scene.camera.fx);
+  EXPECT_NEAR(seen.X_CB.translation().z(), scene.X_CB.translation().z(), 0.02 * scene.X_CB.translation().z());
+}
+
+TEST(BoardTracker, StartsFromFourCornersInAnyOrder) {
+  const BoardScene scene = plain_scene();
+  BoardTracker tracker(options_for(scene));
+  const double half = 0.2;
+  std::array<Eigen::Vector2d, 4> corners;
+  const std::array<std::pair<double, double>, 4> mixed = {{{-half, half}, {half, -half}, {half, half}, {-half, -half}}};
+  for (std::size_t i = 0; i < 4; ++i)  // a hand at the mouse is a few pixels off
+    corners[i] = project(scene.camera, scene.X_CB * Eigen::Vector3d(mixed[i].first, mixed[i].second, 0)) +
+                 Eigen::Vector2d(3.0 - static_cast<double>(i), 2);
+  tracker.start_at(corners);
+  const TrackedBoard seen = see(tracker, test::paint(scene, 2), 0);
+  ASSERT_TRUE(has_pose(seen));
+  EXPECT_LT(error_either_way_px(scene, seen), exact_px);
+}
+
+TEST(BoardTracker, APictureWithoutABoardIsLost) {
+  const BoardScene scene = plain_scene();
+  BoardTracker tracker(options_for(scene));
+  cv::Mat noise(576, 720, CV_8UC3);
+  cv::RNG random(7);
+  random.fill(noise, cv::RNG::UNIFORM, 0, 255);
+  EXPECT_EQ(see(tracker, noise, 0).status, TrackStatus::lost);
+  EXPECT_EQ(see(tracker, cv::Mat(4, 4, CV_8UC3, cv::Scalar::all(0)), 1).status, TrackStatus::lost);
+}
+
+TEST(BoardTracker, TwoRunsGiveTheSamePoses) {
+  BoardScene scene = plain_scene();
+  std::array<Eigen::Isometry3d, 2> last;
+  const cv::Mat a = test::paint(scene, 2);
+  scene.X_CB = looking_at_board(0.76, 49 * degree, 13 * degree);
+  const cv::Mat b = test::paint(scene, 2);
+  for (auto& pose : last) {
+    BoardTracker tracker(options_for(scene));
+    static_cast<void>(see(tracker, a, 0));
+    pose = see(tracker, b, 1).X_CB;
+  }
+  EXPECT_EQ(last[0].matrix(), last[1].matrix());
+}
+
+}  // namespace
+}  // namespace counterpart

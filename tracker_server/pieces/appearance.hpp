@@ -1,0 +1,42 @@
+// What stands on each square, from how it differs from the empty square round it: colour, and structure (rims, tops).
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "protocol/vocabulary/occupancy.hpp"
+#include "tracker_server/pieces/board_view.hpp"
+
+namespace counterpart {
+
+// Two numbers and a colour for each square.
+struct CellLook {
+  bool seen = false;
+  float difference = 0;  // grey levels: how far its middle is from the colour of its own corners
+  float structure = 0;   // grey levels a sample: steepness within it
+  float full = 0;        // 0..1: share of its whole area that differs from an empty square of its colour
+  float glare = 0;       // 0..1: share of its middle that is burnt out
+  Colour middle;         // median of its middle
+  Colour ground;         // of its corners: the empty square
+};
+
+std::vector<CellLook> look_at_cells(const BoardView& view);
+
+// What was learned from a picture; kept, it steadies the next one.
+struct BoardLook {
+  int playable_parity = 1;     // (row + col) % 2 of the squares that carry pieces
+  double threshold = 1;        // of the evidence for a piece
+  bool two_colours = false;
+  Colour dark_piece, light_piece;
+};
+
+struct Reading {
+  std::vector<CellSight> cells;
+  std::vector<float> evidence;  // octaves above an empty square; the threshold is the look's
+  BoardLook look;
+};
+
+// playable_parity: where known; otherwise the one that shows more pieces.
+Reading read_appearance(const std::vector<CellLook>& cells, int squares, std::optional<int> playable_parity);
+
+}  // namespace counterpart

@@ -1,0 +1,104 @@
+#include "tracker_server/pieces/piece_reader.hpp"
+
+#include <algorithm>
+
+#include "protocol/vocabulary/board_geometry.hpp"
+
+namespace counterpart {
+namespace {
+
+// A reading counts once it was the same so many frames in a row.
+constexpr int frames_to_believe = 3;
+
+// Squares that are never played on are always empty: what fills one of them is a hand or a thing, not a piece.
+constexpr float covered_share = 0.5F;
+
+std::vector<bool> covered_squares(const std::vector<CellLook>& looks, int squares) {
+  std::vector<bool> covered(looks.size(), false);
+  const auto index = [&](int row, int col) { return static_cast<std::size_t>(row * squares + col); };
+  for (int row = 0; row < squares; ++row)
+    for (int col = 0; col < squares; ++col)
+      if ((row + col) % 2 == 0 && looks[index(row, col)].seen)
+        covered[index(row, col)] = looks[index(row, col)].full > covered_share;
+  // A playable square is covered if two of those round it are.
+  for (int row = 0; row < squares; ++row)
+    for (int col = 0; col < squares; ++col) {
+      if ((row + col) % 2 == 0) continue;
+      int beside = 0;
+      for (const auto& [dr, dc] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+        const int r = row + dr, c = col + dc;
+        if (r >= 0 && c >= 0 && r < squares && c < squares) beside += covered[index(r, c)];
+      }
+      covered[index(row, col)] = beside >= 2;
+    }
+  return covered;
+}
+
+}  // namespace
+
+PieceReader::PieceReader(int squares) : squares_(squares) {
+  forget();
+}
+
+void PieceReader::forget() {
+  memory_.assign(static_cast<std::size_t>(squares_ * squares_), {});
+  started_ = false;
+}
+
+PieceReading PieceReader::read(const BoardView& view, const FrameStamp& stamp) {
+  const std::vector<CellLook> looks = look_at_cells(view);
+  const Reading now = read_appearance(looks, squares_, 1);
+  PieceReading result;
+  result.covered_cells = covered_squares(looks, squares_);
+  Occupancy& occupancy = result.occupancy;
+  occupancy.stamp = stamp;
+  occupancy.squares = squares_;
+  occupancy.cells.resize(memory_.size());
+
+  bool changed = !started_;
+  int covered = 0;
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    CellMemory& memory = memory_[i];
+    if (result.covered_cells[i]) {
+      ++covered;
+      memory.times = 0;
+      occupancy.cells[i] = {CellReading::unknown, 0};
+      continue;
+    }
+    const CellSight& sight = now.cells[i];
+    memory.times = sight.reading == memory.last ? memory.times + 1 : 1;
+    memory.last = sight.reading;
+    memory.confidence += 0.3F * (sight.confidence - memory.confidence);
+    if (memory.times >= frames_to_believe && memory.steady != memory.last) {
+      memory.steady = memory.last;
+      changed = true;
+    }
+    occupancy.cells[i] = {memory.steady, memory.confidence};
+  }
+  occupancy.covered = covered > 0;
+  if (changed || occupancy.covered || stamp.capture_ns < changed_ns_) changed_ns_ = stamp.capture_ns;
+  started_ = true;
+  occupancy.stable_ns = stamp.capture_ns - changed_ns_;
+  return result;
+}
+
+bool PieceReader::looks_turned_round() const {
+  const int last = playable_squares(squares_);
+  if (static_cast<int>(expected_.size()) != last) return false;
+  int as_expected = 0, turned = 0;
+  for (int square = 1; square <= last; ++square) {
+    const Cell cell = cell_of_square(square, squares_);
+    const CellReading seen = memory_[static_cast<std::size_t>(cell.row * squares_ + cell.col)].steady;
+    if (seen == CellReading::unknown) continue;
+    const auto fits = [&](int expected_square) {
+      const char want = expected_[static_cast<std::size_t>(expected_square - 1)];
+      return (want != 'e') == (seen != CellReading::empty);
+    };
+    as_expected += fits(square);
+    turned += fits(last + 1 - square);
+  }
+  // Clear enough that a hand over some pieces cannot do it.
+  return turned > 0.9 * last && as_expected < 0.6 * last;
+}
+
+}  // namespace counterpart

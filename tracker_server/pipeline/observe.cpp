@@ -1,0 +1,210 @@
+#include "tracker_server/pipeline/observe.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include <opencv2/imgproc.hpp>
+
+#include "protocol/vocabulary/pose_eigen.hpp"
+#include "tracker_server/camera/camera_json.hpp"
+#include "tracker_server/edges/pyramid.hpp"
+#include "tracker_server/pieces/piece_reader.hpp"
+#include "tracker_server/pose/board_tracker.hpp"
+#include "tracker_server/pose/projection.hpp"
+
+namespace counterpart {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+BoardTrackerOptions tracker_options(const ObserveOptions& options) {
+  BoardTrackerOptions result;
+  result.board = options.board;
+  // Numbers that are no camera are worse than none.
+  if (options.intrinsics && fault_of(*options.intrinsics).empty()) result.camera = options.intrinsics;
+  return result;
+}
+
+std::array<Vector2d, 4> points_of(const std::array<double, 8>& corners) {
+  return {Vector2d(corners[0], corners[1]), Vector2d(corners[2], corners[3]), Vector2d(corners[4], corners[5]),
+          Vector2d(corners[6], corners[7])};
+}
+
+// Measures one step of the pipeline by its name.
+template <class Step>
+auto timed(std::map<std::string, double>& step_ms, const char* name, const Step& step) {
+  const auto start = std::chrono::steady_clock::now();
+  auto result = step();
+  step_ms[name] = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+PoseEstimate estimate_of(const TrackedBoard& seen, const FrameStamp& stamp, std::uint32_t intrinsics_id) {
+  PoseEstimate pose;
+  pose.stamp = stamp;
+  pose.status = seen.status;
+  pose.X_CB = to_pose(seen.X_CB);
+  pose.rms_px = static_cast<float>(seen.fit.rms_px);
+  pose.seen_share = static_cast<float>(seen.fit.share());
+  pose.intrinsics_id = intrinsics_id;
+  if (seen.status == TrackStatus::ok || seen.status == TrackStatus::relocalised) {
+    Eigen::Matrix<double, 6, 6> information = seen.fit.information.topLeftCorner<6, 6>();
+    information.diagonal().array() += 1e-9;
+    const Eigen::Matrix<double, 6, 6> covariance = information.inverse();
+    std::size_t i = 0;
+    for (int row = 0; row < 6; ++row)
+      for (int col = row; col < 6; ++col) pose.covariance[i++] = static_cast<float>(covariance(row, col));
+  }
+  return pose;
+}
+
+DebugView debug_of(const TrackedBoard& seen, const Model& model, const FrameStamp& stamp) {
+  DebugView debug;
+  debug.stamp = stamp;
+  if (seen.status == TrackStatus::lost) return debug;
+  for (const ModelSegment& segment : model.segments) {
+    const Vector3d a = seen.X_CB * segment.a_M, b = seen.X_CB * segment.b_M;
+    if (!(a.z() > 0 && b.z() > 0)) continue;
+    const Vector2d p = project(seen.camera, a), q = project(seen.camera, b);
+    debug.lines.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(q.x()),
+                           static_cast<float>(q.y())});
+  }
+  for (std::size_t i = 0; i < seen.fit.probes.size(); ++i) {
+    const EdgeProbe& probe = seen.fit.probes[i];
+    const EdgeHit& hit = seen.fit.hits[i];
+    const float along = hit.verdict == EdgeVerdict::accepted || hit.verdict == EdgeVerdict::outlier ? hit.distance : 0;
+    debug.points.push_back({probe.x + along * probe.nx, probe.y + along * probe.ny,
+                            static_cast<std::uint8_t>(hit.verdict)});
+  }
+  return debug;
+}
+
+std::string letters_of(const Occupancy& occupancy) {
+  std::string letters;
+  for (const CellSight& cell : occupancy.cells) {
+    switch (cell.reading) {
+      case CellReading::empty: letters += 'e'; break;
+      case CellReading::dark: letters += 'd'; break;
+      case CellReading::light: letters += 'l'; break;
+      case CellReading::piece: letters += 'p'; break;
+      case CellReading::unknown: letters += '?'; break;
+    }
+  }
+  return letters;
+}
+
+// From squares (column, row) on the board to the picture.
+BoardToPixel board_to_pixel(const TrackedBoard& seen, const BoardGeometry& board) {
+  const double D = board.square_size_m, half = 0.5 * board.squares * D;
+  return [X_CB = seen.X_CB, camera = seen.camera, D, half](double column, double row) -> Vector2d {
+    const Vector3d p_C = X_CB * Vector3d(column * D - half, half - row * D, 0);
+    if (!(p_C.z() > 1e-6)) return {-1, -1};
+    return project(camera, p_C);
+  };
+}
+
+Mask mask_of(const std::vector<bool>& covered, const BoardToPixel& to_pixel, const Frame& frame, int squares) {
+  cv::Mat1b hidden(frame.image_bgr.size(), std::uint8_t{0});
+  for (int row = 0; row < squares; ++row)
+    for (int col = 0; col < squares; ++col) {
+      if (!covered[static_cast<std::size_t>(row * squares + col)]) continue;
+      std::vector<cv::Point> outline;
+      for (const auto& [dc, dr] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
+        const Vector2d p = to_pixel(col + dc, row + dr);
+        outline.emplace_back(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
+      }
+      cv::fillConvexPoly(hidden, outline, 255);
+    }
+  Mask mask;
+  mask.stamp = frame.stamp;
+  mask.width = static_cast<std::uint16_t>(hidden.cols);
+  mask.height = static_cast<std::uint16_t>(hidden.rows);
+  bool inside = false;
+  std::uint32_t run = 0;
+  for (int y = 0; y < hidden.rows; ++y)
+    for (int x = 0; x < hidden.cols; ++x) {
+      if ((hidden(y, x) != 0) != inside) {
+        mask.runs.push_back(run);
+        run = 0;
+        inside = !inside;
+      }
+      ++run;
+    }
+  mask.runs.push_back(run);
+  return mask;
+}
+
+}  // namespace
+
+struct ObserveContext::State {
+  explicit State(const ObserveOptions& given)
+      : options(given), tracker(tracker_options(given)), reader(given.board.squares) {
+    if (given.corners_px) tracker.start_at(points_of(*given.corners_px));
+  }
+  ObserveOptions options;
+  BoardTracker tracker;
+  PieceReader reader;
+  Intrinsics intrinsics;  // the last ones told
+  bool orientation_checked = false;
+};
+
+ObserveContext::ObserveContext(const ObserveOptions& options) : state_(std::make_unique<State>(options)) {}
+ObserveContext::ObserveContext(ObserveContext&&) noexcept = default;
+ObserveContext::~ObserveContext() = default;
+
+void ObserveContext::restart(const std::optional<std::array<double, 8>>& corners_px) {
+  state_->tracker.forget();
+  state_->reader.forget();
+  state_->orientation_checked = false;
+  if (corners_px) state_->tracker.start_at(points_of(*corners_px));
+}
+
+void ObserveContext::expect(const std::string& real_squares) {
+  state_->reader.expect(real_squares);
+}
+
+Observation observe(const Frame& frame, ObserveContext& context) {
+  ObserveContext::State& state = *context.state_;
+  const BoardGeometry& board = state.options.board;
+  Observation result;
+
+  const Pyramid pyramid =
+      timed(result.step_ms, "pyramid", [&] { return build_pyramid(frame.image_bgr, 3); });
+  const TrackedBoard seen = timed(result.step_ms, "pose", [&] {
+    return state.tracker.track(frame.image_bgr, pyramid, frame.stamp.capture_ns);
+  });
+
+  Intrinsics camera = seen.camera;
+  camera.id = state.intrinsics.id;
+  if (camera != state.intrinsics) {
+    ++camera.id;
+    state.intrinsics = camera;
+  }
+  result.intrinsics = state.intrinsics;
+  result.pose = estimate_of(seen, frame.stamp, state.intrinsics.id);
+  result.debug = debug_of(seen, state.tracker.model(), frame.stamp);
+
+  const bool good = seen.status == TrackStatus::ok || seen.status == TrackStatus::relocalised;
+  if (!good || !state.options.read_pieces) return result;
+  const BoardToPixel to_pixel = board_to_pixel(seen, board);
+  const BoardView view = timed(result.step_ms, "view", [&] { return view_board(frame.image_bgr, board.squares, to_pixel); });
+  const PieceReading reading = timed(result.step_ms, "pieces", [&] { return state.reader.read(view, frame.stamp); });
+  result.debug.readings = letters_of(reading.occupancy);
+  if (reading.occupancy.covered) result.mask = mask_of(reading.covered_cells, to_pixel, frame, board.squares);
+  result.occupancy = reading.occupancy;
+
+  // Which side of the board is which cannot be told from its squares; once, at the start, the expected pieces tell it.
+  constexpr std::int64_t long_enough_ns = 200'000'000;
+  if (!state.orientation_checked && reading.occupancy.stable_ns > long_enough_ns) {
+    state.orientation_checked = true;
+    if (state.reader.looks_turned_round()) {
+      state.tracker.turn_round();
+      state.reader.forget();
+    }
+  }
+  return result;
+}
+
+}  // namespace counterpart

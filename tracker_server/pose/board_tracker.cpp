@@ -1,0 +1,244 @@
+#include "tracker_server/pose/board_tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "tracker_server/locate/lattice.hpp"
+#include "tracker_server/pose/plane_pose.hpp"
+#include "tracker_server/pose/projection.hpp"
+
+namespace counterpart {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+
+// Frames for which a prediction may stand in for a sight.
+constexpr int most_coasting = 2;
+
+// A pose counts when this share of the visible edge points found their edge, and the squares' colours agree. Random
+// texture reaches about 0.1 of the one and 0.1 of the other; a board four fifths hidden has 0.2 of both.
+constexpr double least_share = 0.14;
+constexpr double least_support = 0.13;
+constexpr double largest_rms_px = 1.6;
+constexpr std::size_t least_points = 30;
+
+const std::vector<FitRound> usual_rounds = {{1, 6, 3, 2}, {0, 4, 2, 2}, {0, 3, 1, 2}};
+const std::vector<FitRound> wide_rounds = {{2, 6, 2, 2}, {1, 8, 2, 2}, {1, 5, 2, 2}, {0, 4, 1, 2}, {0, 3, 1, 2}};
+const std::vector<FitRound> settle_rounds = {{1, 5, 2, 2}, {0, 5, 1, 3}, {0, 3, 1, 3}};
+
+// Of one picture's word about the focal length, how much is believed: its errors are alike from frame to frame.
+constexpr double focal_trust = 0.05;
+constexpr double focal_memory = 0.98;
+
+Matrix3d quarter_turn(int n) {
+  Matrix3d turn;
+  turn << 0, -1, n, 1, 0, 0, 0, 0, 1;
+  return turn;
+}
+
+// The two ways round in which the squares have the right colours; the one with row 0 nearer to the picture's bottom
+// first: the camera looks over the real player's shoulder, whose pieces stand on the low rows.
+std::array<Matrix3d, 2> ways_round(const LocatedBoard& located, const BoardGeometry& board) {
+  const int n = board.squares;
+  const bool first_is_light = board.played_on == SquareColour::dark;
+  const Matrix3d quarter = quarter_turn(n);
+  Matrix3d H = located.H;
+  if (located.first_light != first_is_light) H = (H * quarter).eval();
+  Matrix3d turned = H * quarter * quarter;
+  const double near = apply(H, 0.5 * n, 0).y(), far = apply(H, 0.5 * n, n).y();
+  if (near < far) std::swap(H, turned);
+  return {H, turned};
+}
+
+double angle_between(const Isometry3d& a, const Isometry3d& b) {
+  return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
+}
+
+}  // namespace
+
+BoardTracker::BoardTracker(const BoardTrackerOptions& options)
+    : options_(options),
+      model_(board_model(options.board)),
+      samples_(sample_edges(model_, 4)),
+      motion_(options.predictor) {
+  if (options.camera) {
+    camera_ = *options.camera;
+    focal_.log_focal = std::log(camera_.fx);
+    focal_.information = 1 / (0.2 * 0.2);
+  }
+  focal_.estimate = !options.camera || options.focal == FocalMode::estimate;
+}
+
+void BoardTracker::start_at(const Isometry3d& X_CB) {
+  forget();
+  start_X_CB_ = X_CB;
+}
+
+void BoardTracker::start_at(const std::array<Vector2d, 4>& corners_px) {
+  forget();
+  start_corners_ = corners_px;
+}
+
+void BoardTracker::forget() {
+  tracking_ = false;
+  frames_unseen_ = 0;
+  last_X_CB_.reset();
+  start_X_CB_.reset();
+  start_corners_.reset();
+  motion_.forget();
+  contrast_ = 0;
+  ever_seen_ = false;
+  for (EdgeSample& sample : samples_) {
+    const ModelSegment& segment = model_.segments[static_cast<std::size_t>(sample.segment)];
+    sample.polarity = segment.polarity;
+    sample.contrast = 0;
+  }
+}
+
+void BoardTracker::turn_round() {
+  if (!last_X_CB_) return;
+  const Isometry3d X_CB = *last_X_CB_ * Eigen::AngleAxisd(EIGEN_PI, Eigen::Vector3d::UnitZ());
+  const double contrast = contrast_;
+  const bool tracking = tracking_;
+  forget();
+  last_X_CB_ = X_CB;
+  contrast_ = contrast;
+  tracking_ = tracking;
+  ever_seen_ = true;
+  start_X_CB_ = X_CB;
+}
+
+BoardTracker::Attempt BoardTracker::attempt(const Pyramid& pyramid, const Isometry3d& start,
+                                            const std::vector<FitRound>& rounds) const {
+  Attempt result;
+  const auto visible = visible_samples(model_, samples_, start);
+  result.fit = fit_pose(pyramid, samples_, visible, camera_, start, rounds, focal_);
+  if (!result.fit.X_CM.matrix().allFinite() || result.fit.X_CM.translation().z() <= 0) return result;
+  result.check = check_chequer(pyramid.levels[0], options_.board, result.fit.camera, result.fit.X_CM, contrast_);
+  const bool from_above = (result.fit.X_CM.inverse().translation()).z() > 0;
+  result.good = from_above && result.fit.accepted >= least_points && result.fit.share() >= least_share &&
+                result.fit.rms_px <= largest_rms_px && result.check.support >= least_support && !result.check.shifted();
+  return result;
+}
+
+std::optional<BoardTracker::Attempt> BoardTracker::from_located(const LocatedBoard& located, const Pyramid& pyramid) {
+  const int width = pyramid.levels[0].cols, height = pyramid.levels[0].rows;
+  std::optional<PlanePose> chosen;
+  for (const Matrix3d& H : ways_round(located, options_.board)) {
+    const bool known = options_.camera.has_value() || ever_seen_;
+    const PlanePose pose = known ? pose_of_board(H, options_.board, camera_)
+                                 : pose_and_focal_of_board(H, options_.board, width, height);
+    // Once seen, the board is taken to lie as it lay.
+    if (chosen && (!last_X_CB_ || angle_between(pose.X_CB, *last_X_CB_) >= angle_between(chosen->X_CB, *last_X_CB_)))
+      continue;
+    chosen = pose;
+  }
+  if (!chosen) return std::nullopt;
+  if (!options_.camera && !ever_seen_) {
+    camera_ = chosen->camera;
+    focal_.log_focal = std::log(camera_.fx);
+    // One sight from above says little; the frames to come will say more.
+    focal_.information = 1 / (0.3 * 0.3);
+  }
+  Attempt result = attempt(pyramid, chosen->X_CB, settle_rounds);
+  if (!result.good) return std::nullopt;
+  return result;
+}
+
+std::optional<BoardTracker::Attempt> BoardTracker::find(const cv::Mat& picture_bgr, const Pyramid& pyramid) {
+  // A start that was given is tried on one picture; if it does not fit, the board is sought like any other.
+  if (const auto start = std::exchange(start_X_CB_, std::nullopt)) {
+    Attempt result = attempt(pyramid, *start, wide_rounds);
+    if (result.good) return result;
+  }
+  if (const auto corners = std::exchange(start_corners_, std::nullopt)) {
+    if (const auto board = board_at_corners(pyramid, *corners, options_.board.squares))
+      if (auto result = from_located(*board, pyramid)) return result;
+  }
+  const auto located = locate_board(picture_bgr, options_.board.squares);
+  if (!located) return std::nullopt;
+  return from_located(*located, pyramid);
+}
+
+void BoardTracker::learn(const Attempt& attempt) {
+  constexpr float rate = 0.1F;
+  for (std::size_t i = 0; i < attempt.fit.hits.size(); ++i) {
+    const EdgeHit& hit = attempt.fit.hits[i];
+    if (hit.verdict != EdgeVerdict::accepted && hit.verdict != EdgeVerdict::wrong_contrast) continue;
+    EdgeSample& sample = samples_[attempt.fit.samples[i]];
+    const float seen = std::abs(hit.contrast);
+    sample.contrast = sample.contrast > 0 ? sample.contrast + rate * (seen - sample.contrast) : seen;
+    if (sample.polarity == 0 && hit.verdict == EdgeVerdict::accepted) sample.polarity = hit.contrast > 0 ? 1 : -1;
+  }
+  const double seen = attempt.check.contrast;
+  if (attempt.check.support > 0.5) contrast_ = contrast_ > 0 ? contrast_ + rate * (seen - contrast_) : seen;
+}
+
+void BoardTracker::accept(const Attempt& attempt, std::int64_t time_ns) {
+  camera_ = attempt.fit.camera;
+  if (focal_.estimate) {
+    // What this picture alone says of the focal length once the pose is free to follow.
+    const Eigen::Matrix<double, 6, 6> P = attempt.fit.information.topLeftCorner<6, 6>();
+    const Eigen::Matrix<double, 6, 1> c = attempt.fit.information.col(6).head<6>();
+    const double own = attempt.fit.information(6, 6) - c.dot(P.ldlt().solve(c));
+    focal_.log_focal = std::log(camera_.fx);
+    focal_.information = focal_memory * focal_.information + focal_trust * std::max(0.0, own);
+  }
+  last_X_CB_ = attempt.fit.X_CM;
+  motion_.add(attempt.fit.X_CM, time_ns);
+  learn(attempt);
+  tracking_ = true;
+  ever_seen_ = true;
+  frames_unseen_ = 0;
+  start_X_CB_.reset();
+  start_corners_.reset();
+}
+
+TrackedBoard BoardTracker::track(const cv::Mat& picture_bgr, const Pyramid& pyramid, std::int64_t time_ns) {
+  const int width = pyramid.levels[0].cols, height = pyramid.levels[0].rows;
+  if (!options_.camera && ever_seen_ && (camera_.width != width || camera_.height != height)) forget();
+
+  TrackedBoard result;
+  const bool was_tracking = tracking_;
+  std::optional<Attempt> found;
+  if (tracking_ && !start_X_CB_) {
+    const Isometry3d predicted = motion_.predict(time_ns);
+    Attempt tried = attempt(pyramid, predicted, usual_rounds);
+    if (!tried.good) tried = attempt(pyramid, predicted, wide_rounds);
+    if (!tried.good) tried = attempt(pyramid, *last_X_CB_, wide_rounds);
+    result.fit = tried.fit;
+    result.check = tried.check;
+    if (tried.good) found = std::move(tried);
+  }
+  bool relocated = false;
+  if (!found) {
+    found = find(picture_bgr, pyramid);
+    relocated = found.has_value();
+  }
+  if (found) {
+    if (relocated) motion_.forget();
+    accept(*found, time_ns);
+    result.status = relocated && !was_tracking ? TrackStatus::relocalised : TrackStatus::ok;
+    result.X_CB = found->fit.X_CM;
+    result.camera = found->fit.camera;
+    result.fit = std::move(found->fit);
+    result.check = found->check;
+    return result;
+  }
+  ++frames_unseen_;
+  result.camera = camera_;
+  if (tracking_ && frames_unseen_ <= most_coasting) {
+    result.status = TrackStatus::coasting;
+    result.X_CB = motion_.predict(time_ns);
+    return result;
+  }
+  tracking_ = false;
+  motion_.forget();
+  result.status = TrackStatus::lost;
+  return result;
+}
+
+}  // namespace counterpart

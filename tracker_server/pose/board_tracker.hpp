@@ -1,0 +1,83 @@
+// The board followed from frame to frame: started and found again by itself, and honest about being lost.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include <opencv2/core/mat.hpp>
+
+#include "protocol/vocabulary/board_geometry.hpp"
+#include "protocol/vocabulary/intrinsics.hpp"
+#include "protocol/vocabulary/pose.hpp"
+#include "tracker_server/edges/pyramid.hpp"
+#include "tracker_server/locate/locate.hpp"
+#include "tracker_server/pose/chequer_check.hpp"
+#include "tracker_server/pose/fit.hpp"
+#include "tracker_server/pose/motion.hpp"
+
+namespace counterpart {
+
+enum class FocalMode : std::uint8_t { fixed = 1, estimate = 2 };
+
+struct BoardTrackerOptions {
+  BoardGeometry board;
+  std::optional<Intrinsics> camera;  // empty: of unknown focal length, which is estimated
+  FocalMode focal = FocalMode::fixed;
+  Predictor predictor = Predictor::first;
+};
+
+struct TrackedBoard {
+  TrackStatus status = TrackStatus::lost;
+  Eigen::Isometry3d X_CB = Eigen::Isometry3d::Identity();
+  Intrinsics camera;
+  PoseFit fit;         // how it was fitted; of the last attempt if that failed
+  ChequerCheck check;  // of the same pose
+};
+
+class BoardTracker {
+ public:
+  explicit BoardTracker(const BoardTrackerOptions& options);
+
+  // Starts from a known pose (a saved one), or from outer corners in any order, in the next picture.
+  void start_at(const Eigen::Isometry3d& X_CB);
+  void start_at(const std::array<Eigen::Vector2d, 4>& corners_px);
+  void forget();
+
+  // time_ns grows from call to call. The picture's size may change: the tracker then starts afresh.
+  TrackedBoard track(const cv::Mat& picture_bgr, const Pyramid& pyramid, std::int64_t time_ns);
+
+  // The board is lying the other way round than was thought: turns the frame B by 180 degrees.
+  void turn_round();
+
+  const std::vector<EdgeSample>& samples() const { return samples_; }
+  const Model& model() const { return model_; }
+
+ private:
+  struct Attempt {
+    PoseFit fit;
+    ChequerCheck check;
+    bool good = false;
+  };
+  Attempt attempt(const Pyramid& pyramid, const Eigen::Isometry3d& start, const std::vector<FitRound>& rounds) const;
+  std::optional<Attempt> find(const cv::Mat& picture_bgr, const Pyramid& pyramid);
+  std::optional<Attempt> from_located(const LocatedBoard& located, const Pyramid& pyramid);
+  void accept(const Attempt& attempt, std::int64_t time_ns);
+  void learn(const Attempt& attempt);
+
+  BoardTrackerOptions options_;
+  Model model_;
+  std::vector<EdgeSample> samples_;
+  Motion motion_;
+  Intrinsics camera_;
+  FocalPrior focal_;
+  double contrast_ = 0;  // grey levels between light and dark squares
+  std::optional<Eigen::Isometry3d> last_X_CB_;
+  std::optional<Eigen::Isometry3d> start_X_CB_;
+  std::optional<std::array<Eigen::Vector2d, 4>> start_corners_;
+  int frames_unseen_ = 0;
+  bool tracking_ = false;
+  bool ever_seen_ = false;
+};
+
+}  // namespace counterpart

@@ -1,0 +1,30 @@
+// Does the picture look like this board at this pose? What the edges' positions alone cannot tell.
+#pragma once
+
+#include <array>
+
+#include <Eigen/Geometry>
+#include <opencv2/core/mat.hpp>
+
+#include "protocol/vocabulary/board_geometry.hpp"
+#include "protocol/vocabulary/intrinsics.hpp"
+
+namespace counterpart {
+
+struct ChequerCheck {
+  double support = 0;   // -1..1: mean step between neighbouring squares, signed by colour, in typical steps
+  double contrast = 0;  // grey levels: the median step
+  int looked_at = 0;    // pairs of squares inside the picture
+  // Along the outermost squares (top row, bottom row, left, right), and along where more squares would follow.
+  std::array<double, 4> rim{};
+  std::array<double, 4> beyond{};
+
+  // The pattern goes on beyond one side and is missing at the opposite one.
+  bool shifted() const;
+};
+
+// typical_contrast: grey levels between light and dark squares as known so far; 0: as in this picture.
+ChequerCheck check_chequer(const cv::Mat1b& grey, const BoardGeometry& board, const Intrinsics& camera,
+                           const Eigen::Isometry3d& X_CB, double typical_contrast);
+
+}  // namespace counterpart

@@ -1,0 +1,135 @@
+#include "tracker_server/pipeline/serve.hpp"
+
+#include <fstream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include "protocol/daemon/stop_signal.hpp"
+#include "tracker_server/programs/corners.hpp"
+#include "tracker_server/programs/programs.hpp"
+
+namespace counterpart {
+namespace {
+
+struct Arguments {
+  ServeOptions serve;
+  std::string board_file;
+  std::string init = "auto";
+  std::string virtual_side = "light";
+  std::string activity = "game";
+  std::string video = "raw";
+  double square_size_m = 0;
+};
+
+// board.json: any of the fields of BoardGeometry by their names.
+Result<void> read_board(const std::string& file, BoardGeometry& board) {
+  std::ifstream in(file);
+  if (!in) return failure(ErrorCode::not_found, "cannot read the board's description '" + file + "'");
+  const auto json = nlohmann::json::parse(in, nullptr, false);
+  if (!json.is_object()) return failure(ErrorCode::bad_format, "'" + file + "' is not a JSON object");
+  const auto number = [&](const char* key, auto& value) {
+    if (json.contains(key) && json[key].is_number()) json[key].get_to(value);
+  };
+  number("squares", board.squares);
+  number("square_size_m", board.square_size_m);
+  number("border_m", board.border_m);
+  number("thickness_m", board.thickness_m);
+  number("piece_radius_m", board.piece_radius_m);
+  number("piece_height_m", board.piece_height_m);
+  if (json.value("played_on", "dark") == "light") board.played_on = SquareColour::light;
+  const bool sane =
+      (board.squares == 8 || board.squares == 10) && board.square_size_m > 0.005 && board.square_size_m < 1;
+  if (!sane)
+    return failure(ErrorCode::invalid_argument, "'" + file + "': squares must be 8 or 10, square_size_m 0.005 to 1");
+  return {};
+}
+
+Result<void> complete(Arguments& arguments) {
+  ServeOptions& serve = arguments.serve;
+  if (!arguments.board_file.empty()) {
+    if (auto read = read_board(arguments.board_file, serve.observe.board); !read) return read;
+  }
+  if (arguments.square_size_m > 0) serve.observe.board.square_size_m = arguments.square_size_m;
+  if (arguments.init.rfind("corners=", 0) == 0) {
+    const auto corners = corners_from(arguments.init.substr(std::string("corners=").size()));
+    if (!corners) return tl::make_unexpected(corners.error());
+    serve.observe.corners_px = *corners;
+  } else if (arguments.init != "auto") {
+    return failure(ErrorCode::invalid_argument, "--init " + arguments.init + ": auto or corners=x0,y0,...,x3,y3");
+  }
+  serve.observe.lockstep = serve.lockstep;
+  serve.game.board = serve.observe.board;
+  if (serve.observe.board.squares == 8 && serve.game.rules == "international") serve.game.rules = "brazilian";
+  serve.game.virtual_side = arguments.virtual_side == "light" ? Side::light : Side::dark;
+  serve.opponent.rules = serve.game.rules;
+  serve.opponent.lockstep = serve.lockstep;
+  serve.activity = arguments.activity == "game" ? Activity::game : Activity::show;
+  serve.link.role = Role::tracker;
+  serve.link.software = "tracker_server " COUNTERPART_VERSION;
+  serve.link.lockstep = serve.lockstep;
+  serve.link.video_codec = arguments.video == "raw" ? PixelCodec::raw_bgr8 : PixelCodec::jpeg;
+  return {};
+}
+
+}  // namespace
+
+void add_serve(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<Arguments>();
+  ServeOptions& serve = arguments->serve;
+  CLI::App* command =
+      app.add_subcommand("serve", "The daemon: watches the board, plays, and directs the virtual human");
+  command
+      ->add_option("--camera", serve.camera_uri,
+                   "/dev/videoN, film, folder of pictures, rtsp://, http:// or vhp://HOST:PORT")
+      ->required();
+  command->add_option("--listen", serve.listen, "HOST:PORT for renderers and tools")->capture_default_str();
+  command->add_option("--token-file", serve.link.token_file, "needed to listen on anything but loopback");
+  command->add_option("--board", arguments->board_file, "JSON with the board's sizes");
+  command->add_option("--squares", serve.observe.board.squares, "a side")
+      ->check(CLI::IsMember({8, 10}))
+      ->capture_default_str();
+  command->add_option("--square-size", arguments->square_size_m, "metres")->check(CLI::Range(0.005, 1.0));
+  command->add_option("--init", arguments->init, "auto, or corners=x0,y0,...,x3,y3 of the playing surface")
+      ->capture_default_str();
+  command->add_option("--rules", serve.game.rules, "international, brazilian or english")->capture_default_str();
+  command->add_option("--fen", serve.game.start_fen, "start from this position");
+  command->add_option("--virtual-side", arguments->virtual_side, "the side the virtual human plays")
+      ->check(CLI::IsMember({"light", "dark"}))
+      ->capture_default_str();
+  command->add_option("--level", serve.opponent.level, "1 (a beginner beats it) to 8")
+      ->check(CLI::Range(1, 8))
+      ->capture_default_str();
+  command->add_option("--seed", serve.opponent.seed, "of the choice among near-equal moves")->capture_default_str();
+  command->add_option("--activity", arguments->activity, "game, or show: a short performance for a film")
+      ->check(CLI::IsMember({"game", "show"}))
+      ->capture_default_str();
+  command->add_flag("--lockstep", serve.lockstep, "no frame dropped, no clock read: two runs give the same");
+  command->add_option("--frames", serve.frames, "stop after so many");
+  command->add_option("--state", serve.state_folder, "keep the game here and go on with it after a restart");
+  command->add_option("--pdn", serve.pdn_file, "write the game here, anew with every move");
+  command->add_option("--poses", serve.poses_file, "write every pose here, CSV");
+  command->add_option("--report", serve.report_file, "write counts and times here at the end, JSON");
+  command->add_option("--record", serve.link.record_file, "capture everything on the link, MCAP");
+  command->add_option("--video", arguments->video, "raw (loopback) or jpeg (between hosts)")
+      ->check(CLI::IsMember({"raw", "jpeg"}))
+      ->capture_default_str();
+  command->callback([arguments, &exit_code] {
+    if (auto completed = complete(*arguments); !completed) {
+      spdlog::error("{}", completed.error().message);
+      exit_code = completed.error().code == ErrorCode::invalid_argument ? 2 : 1;
+      return;
+    }
+    catch_stop_signals();
+    if (auto served = counterpart::serve(arguments->serve); !served) {
+      spdlog::error("{}", served.error().message);
+      exit_code = 1;
+    }
+  });
+}
+
+}  // namespace counterpart

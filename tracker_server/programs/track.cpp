@@ -1,0 +1,200 @@
+// tracker_server track: the poses of a film, one line a frame.
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include "protocol/vocabulary/pose_eigen.hpp"
+#include "tracker_server/camera/camera.hpp"
+#include "tracker_server/camera/camera_json.hpp"
+#include "tracker_server/pose/board_tracker.hpp"
+#include "tracker_server/pose/projection.hpp"
+#include "tracker_server/pose/start_file.hpp"
+#include "tracker_server/programs/corners.hpp"
+#include "tracker_server/programs/programs.hpp"
+
+namespace counterpart {
+namespace {
+
+volatile std::sig_atomic_t stop_asked = 0;
+
+struct TrackArguments {
+  std::string sequence;
+  std::string poses;
+  std::string model;
+  int squares = 10;
+  double square_size_m = 0.04;
+  std::string played_on = "dark";
+  std::string init = "auto";
+  std::string focal = "fixed";
+  std::string predictor = "first";
+  std::string camera_json;
+  std::string report;
+};
+
+const char* name_of(TrackStatus status) {
+  switch (status) {
+    case TrackStatus::ok:
+    case TrackStatus::relocalised:
+      return "ok";
+    case TrackStatus::coasting:
+      return "coasting";
+    case TrackStatus::lost:
+      break;
+  }
+  return "lost";
+}
+
+void write_row(std::ostream& out, FrameId frame, const TrackedBoard& seen, const BoardGeometry& board, double ms) {
+  out << frame;
+  if (seen.status == TrackStatus::lost) {
+    out << ",,,,,,,,lost,,," << ms << ",,,,,,,,\n";
+    return;
+  }
+  const Pose pose = to_pose(seen.X_CB);
+  for (double value : pose.p) out << ',' << value;
+  for (double value : pose.q) out << ',' << value;
+  out << ',' << name_of(seen.status) << ',' << seen.fit.rms_px << ',' << seen.camera.fx << ',' << ms;
+  const double half = 0.5 * board.squares * board.square_size_m;
+  for (const auto& [x, y] : {std::pair{-half, half}, {half, half}, {half, -half}, {-half, -half}}) {
+    const Eigen::Vector2d p = project(seen.camera, seen.X_CB * Eigen::Vector3d(x, y, 0));
+    out << ',' << p.x() << ',' << p.y();
+  }
+  out << '\n';
+}
+
+double percentile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+Result<BoardTracker> make_tracker(const TrackArguments& arguments, const Camera& camera) {
+  BoardTrackerOptions options;
+  options.board.squares = arguments.squares;
+  options.board.square_size_m = arguments.square_size_m;
+  options.board.played_on = arguments.played_on == "light" ? SquareColour::light : SquareColour::dark;
+  options.camera = camera.intrinsics();
+  if (!arguments.camera_json.empty()) {
+    const auto given = read_camera_json(arguments.camera_json);
+    if (!given) return tl::make_unexpected(given.error());
+    options.camera = *given;
+  }
+  options.focal = arguments.focal == "estimate" ? FocalMode::estimate : FocalMode::fixed;
+  const auto predictor = predictor_from(arguments.predictor);
+  if (!predictor) return tl::make_unexpected(predictor.error());
+  options.predictor = *predictor;
+
+  BoardTracker tracker(options);
+  const std::string corners_prefix = "corners=";
+  if (arguments.init.rfind(corners_prefix, 0) == 0) {
+    const auto corners = corners_from(arguments.init.substr(corners_prefix.size()));
+    if (!corners) return tl::make_unexpected(corners.error());
+    std::array<Eigen::Vector2d, 4> points;
+    for (std::size_t i = 0; i < 4; ++i) points[i] = Eigen::Vector2d((*corners)[2 * i], (*corners)[2 * i + 1]);
+    tracker.start_at(points);
+  } else {
+    std::filesystem::path file = arguments.init;
+    if (arguments.init == "auto") file = std::filesystem::path(arguments.sequence) / "init.json";
+    if (arguments.init != "auto" || std::filesystem::exists(file)) {
+      const auto X_CB = read_start_file(file);
+      if (!X_CB) return tl::make_unexpected(X_CB.error());
+      tracker.start_at(*X_CB);
+    }
+  }
+  return tracker;
+}
+
+Result<void> track(const TrackArguments& arguments) {
+  auto camera = open_camera(arguments.sequence, Pace::lockstep);
+  if (!camera) return tl::make_unexpected(camera.error());
+  auto tracker = make_tracker(arguments, **camera);
+  if (!tracker) return tl::make_unexpected(tracker.error());
+  BoardGeometry board;
+  board.squares = arguments.squares;
+  board.square_size_m = arguments.square_size_m;
+
+  std::ofstream out(arguments.poses);
+  if (!out) return failure(ErrorCode::io, "Cannot write " + arguments.poses + ".");
+  out.precision(9);
+  out << "frame,tx,ty,tz,qw,qx,qy,qz,status,rms_px,fx,ms,x0,y0,x1,y1,x2,y2,x3,y3\n";
+
+  std::vector<double> times_ms, rms_px;
+  std::map<std::string, int> counts{{"ok", 0}, {"coasting", 0}, {"lost", 0}};
+  double focal_px = 0;
+  std::signal(SIGINT, [](int) { stop_asked = 1; });
+  while (stop_asked == 0) {
+    auto next = (*camera)->next();
+    if (!next) return tl::make_unexpected(next.error());
+    if (!*next) break;
+    const Frame& frame = **next;
+    const auto start = std::chrono::steady_clock::now();
+    const Pyramid pyramid = build_pyramid(frame.image_bgr, 3);
+    const TrackedBoard seen = tracker->track(frame.image_bgr, pyramid, frame.stamp.capture_ns);
+    const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    write_row(out, frame.stamp.frame_id, seen, board, ms);
+    times_ms.push_back(ms);
+    ++counts[name_of(seen.status)];
+    if (seen.status != TrackStatus::lost) {
+      rms_px.push_back(seen.fit.rms_px);
+      focal_px = seen.camera.fx;
+    }
+  }
+  if (!out.flush()) return failure(ErrorCode::io, "Cannot write " + arguments.poses + "; is the disk full?");
+  spdlog::info("{} frames: {} ok, {} coasting, {} lost; median {:.2f} ms", times_ms.size(), counts["ok"],
+               counts["coasting"], counts["lost"], percentile(times_ms, 0.5));
+
+  if (!arguments.report.empty()) {
+    const nlohmann::ordered_json report = {{"frames", times_ms.size()},
+                                           {"ok", counts["ok"]},
+                                           {"coasting", counts["coasting"]},
+                                           {"lost", counts["lost"]},
+                                           {"ms_median", percentile(times_ms, 0.5)},
+                                           {"ms_p95", percentile(times_ms, 0.95)},
+                                           {"rms_px_median", percentile(rms_px, 0.5)},
+                                           {"fx", focal_px}};
+    std::ofstream file(arguments.report);
+    file << report.dump(2) << '\n';
+    if (!file.flush()) return failure(ErrorCode::io, "Cannot write " + arguments.report + ".");
+  }
+  if (counts["ok"] == 0)
+    return failure(ErrorCode::not_found, "The board was not found in any of the " + std::to_string(times_ms.size()) +
+                                             " frames; is --squares right? --init corners=... tells where it is.");
+  return {};
+}
+
+}  // namespace
+
+void add_track(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<TrackArguments>();
+  CLI::App* command = app.add_subcommand("track", "Write the pose of the board, or of a model, in every frame of a film");
+  command->add_option("sequence", arguments->sequence, "SEQUENCE folder, folder of pictures, film or stream")->required();
+  command->add_option("--poses", arguments->poses, "CSV file to write")->required();
+  command->add_option("--squares", arguments->squares, "Squares a side")->check(CLI::Range(4, 12));
+  command->add_option("--square-size", arguments->square_size_m, "Side of a square, metres")
+      ->check(CLI::Range(0.001, 10.0));
+  command->add_option("--played-on", arguments->played_on, "Colour of the squares that are played on")
+      ->check(CLI::IsMember({"dark", "light"}));
+  command->add_option("--init", arguments->init, "auto, a file with a pose, or corners=x0,y0,...,x3,y3");
+  command->add_option("--focal", arguments->focal, "fixed or estimate; estimated anyway if the camera is not known")
+      ->check(CLI::IsMember({"fixed", "estimate"}));
+  command->add_option("--predictor", arguments->predictor, "none, first or second order")
+      ->check(CLI::IsMember({"none", "first", "second"}));
+  command->add_option("--camera", arguments->camera_json, "camera.json to use instead of the one beside the pictures");
+  command->add_option("--report", arguments->report, "JSON file for the summary");
+  command->callback([arguments, &exit_code] {
+    if (const auto done = track(*arguments); !done) {
+      spdlog::error("{}", done.error().message);
+      exit_code = done.error().code == ErrorCode::invalid_argument ? 2 : 1;
+    }
+  });
+}
+
+}  // namespace counterpart

@@ -1,0 +1,20 @@
+#include "vhd_renderer/output/output.hpp"
+
+#include <filesystem>
+
+#include "vhd_renderer/output/film.hpp"
+#include "vhd_renderer/output/picture_folder.hpp"
+
+namespace counterpart {
+
+Result<std::unique_ptr<Output>> open_output(const std::string& target) {
+  const std::filesystem::path path(target);
+  if (path.extension() == ".mp4") return open_film(target);
+  if (path.has_extension() && !std::filesystem::is_directory(path)) {
+    return failure(ErrorCode::unsupported,
+                   "cannot write '" + target + "': give a name ending in .mp4, or a folder for PNG pictures");
+  }
+  return open_picture_folder(target);
+}
+
+}  // namespace counterpart
