@@ -14,6 +14,7 @@
 #include "game_controller/notation/move_text.hpp"
 #include "game_controller/programs/judge_lines.hpp"
 #include "game_controller/programs/play.hpp"
+#include "game_controller/programs/train.hpp"
 #include "game_controller/rules/generate.hpp"
 
 namespace {
@@ -57,7 +58,7 @@ int run_best(const Rules& rules, const std::string& fen, double move_time_s) {
                     failed);
   }
   const auto start = Clock::now();
-  Searcher searcher(rules, Evaluation::plain, std::size_t{64} << 20);
+  Searcher searcher(rules, Evaluation::trained, std::size_t{64} << 20);
   SearchLimits limits;
   limits.give_up = [&] { return seconds_since(start) >= move_time_s; };
   const SearchReport report = searcher.search(*position, {}, limits);
@@ -119,6 +120,15 @@ int main(int argc, char** argv) {
 
   CLI::App* hub_command = app.add_subcommand("hub", "Is a Hub 2 engine on standard input and output");
 
+  TrainOptions training;
+  CLI::App* train_command = app.add_subcommand("train", "Learns the weights of the evaluation from games with itself");
+  train_command->add_option("--out", training.out, "file for the weights")->required();
+  train_command->add_option("--games", training.games, "of each round")->capture_default_str();
+  train_command->add_option("--depth", training.depth, "plies that each move is thought about")->capture_default_str();
+  train_command->add_option("--epochs", training.epochs, "times that all positions are gone through")
+      ->capture_default_str();
+  train_command->add_option("--seed", training.seed, "of the games")->capture_default_str();
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -131,6 +141,10 @@ int main(int argc, char** argv) {
   if (play_command->parsed()) {
     const auto played = play_in_terminal(rules, play, std::cin, std::cout);
     return played ? 0 : complain(played.error(), failed);
+  }
+  if (train_command->parsed()) {
+    const auto trained = train(training, std::cerr);
+    return trained ? 0 : complain(trained.error(), failed);
   }
   if (hub_command->parsed()) run_hub_engine(std::cin, std::cout);
   return 0;
