@@ -103,7 +103,8 @@ class HubEngine {
                            .with("version", COUNTERPART_VERSION)
                            .with("author", "the Counterpart project")));
     put("param name=level value=0 type=int min=0 max=8");
-    put("param name=evaluation value=" + std::string(name_of(evaluation_)) + " type=enum values=\"trained plain material\"");
+    put("param name=evaluation value=" + std::string(name_of(evaluation_)) +
+        " type=enum values=\"trained plain material\"");
     put("param name=hash-mb value=" + std::to_string(hash_mb_) + " type=int min=1 max=4096");
     put("wait");
   }

@@ -38,6 +38,10 @@ float logistic_loss(float predicted, float target) {
 class Regression {
  public:
   Regression(const FitOptions& options) : options_(options), model_(std::make_unique<Model>()) {
+    if (options.start != nullptr) {
+      begin_with(*options.start);
+      return;
+    }
     for (Knob& knob : model_->extras[extra_men]) knob.value = logits_a_man;
     for (Knob& knob : model_->extras[extra_first_king]) knob.value = 3 * logits_a_man;
     for (Knob& knob : model_->extras[extra_further_kings]) knob.value = 3 * logits_a_man;
@@ -94,6 +98,18 @@ class Regression {
   }
 
  private:
+  void begin_with(const PatternWeights& weights) {
+    constexpr float scale = logits_a_man / (man_value * weight_unit);
+    const auto begin = [](std::array<Knob, 2>& knobs, const StagedWeight& weight) {
+      knobs[0].value = scale * static_cast<float>(weight.opening);
+      knobs[1].value = scale * static_cast<float>(weight.ending);
+    };
+    for (std::size_t i = 0; i < pattern_count; ++i) {
+      for (std::size_t s = 0; s < pattern_states; ++s) begin(model_->patterns[i][s], weights.patterns[i][s]);
+    }
+    for (std::size_t i = 0; i < extra_count; ++i) begin(model_->extras[i], weights.extras[i]);
+  }
+
   static float share(const PatternView& view) {
     return static_cast<float>(view.stage) / static_cast<float>(full_stage);
   }

@@ -17,6 +17,7 @@ struct FitOptions {
   double shrink = 2e-5;    // pull towards 0 at each visit: rare patterns stay small
   int held_back = 20;      // every so many games one is not learnt but only predicted, to see what was understood
   std::uint64_t seed = 1;  // of the order of the lessons
+  const PatternWeights* start = nullptr;  // what is known already; nullptr: only what pieces are worth
 };
 
 struct FitProgress {

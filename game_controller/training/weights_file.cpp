@@ -19,8 +19,8 @@ Result<std::unique_ptr<PatternWeights>> read_weights(const std::string& file) {
   auto weights = std::make_unique<PatternWeights>();
   in.read(reinterpret_cast<char*>(weights.get()), sizeof *weights);
   if (in.gcount() != sizeof *weights || in.peek() != std::ifstream::traits_type::eof()) {
-    return failure(ErrorCode::bad_format, file + " is no file of weights: it must be " +
-                                              std::to_string(sizeof *weights) + " bytes long.");
+    return failure(ErrorCode::bad_format,
+                   file + " is no file of weights: it must be " + std::to_string(sizeof *weights) + " bytes long.");
   }
   return weights;
 }
