@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "game_controller/engine/dice.hpp"
 #include "game_controller/rules/generate.hpp"
 
 namespace counterpart {
@@ -18,13 +19,6 @@ constexpr std::array<LevelPlan, highest_level> plans{{
     {Evaluation::plain, 12, 500'000, 0},
     {Evaluation::plain, 60, 1'500'000, 0},
 }};
-
-std::uint64_t mixed(std::uint64_t x) {  // splitmix64
-  x += 0x9E3779B97F4A7C15u;
-  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
-  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
-  return x ^ (x >> 31);
-}
 
 }  // namespace
 

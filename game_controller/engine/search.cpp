@@ -53,6 +53,7 @@ struct Line {
 struct Searcher::State {
   const Rules* rules;
   Evaluation evaluation;
+  const PatternWeights* weights;
   TranspositionTable table;
   std::array<std::array<int, 64>, 64> history{};
   std::array<std::array<Killer, 2>, max_ply + 2> killers{};
@@ -63,7 +64,8 @@ struct Searcher::State {
   std::uint64_t leaves = 0;
   std::uint64_t leaf_plies = 0;
 
-  State(const Rules& r, Evaluation e, std::size_t bytes) : rules(&r), evaluation(e), table(bytes) {}
+  State(const Rules& r, Evaluation e, std::size_t bytes, const PatternWeights* w)
+      : rules(&r), evaluation(e), weights(w), table(bytes) {}
 
   bool out_of_time() const {
     if (limits.nodes > 0 && nodes >= limits.nodes) return true;
@@ -87,7 +89,7 @@ struct Searcher::State {
   int rest_value(const Position& p, int ply) {
     ++leaves;
     leaf_plies += static_cast<std::uint64_t>(ply);
-    return evaluate(*rules, evaluation, p);
+    return evaluate(*rules, evaluation, weights, p);
   }
 
   // Captures are compulsory, so a position counts as quiet only when neither side could capture.
@@ -272,8 +274,8 @@ struct Searcher::State {
   }
 };
 
-Searcher::Searcher(const Rules& rules, Evaluation evaluation, std::size_t table_bytes)
-    : state_(std::make_unique<State>(rules, evaluation, table_bytes)) {}
+Searcher::Searcher(const Rules& rules, Evaluation evaluation, std::size_t table_bytes, const PatternWeights* weights)
+    : state_(std::make_unique<State>(rules, evaluation, table_bytes, weights)) {}
 Searcher::~Searcher() = default;
 Searcher::Searcher(Searcher&&) noexcept = default;
 

@@ -35,7 +35,8 @@ struct SearchReport {
 
 class Searcher {
  public:
-  Searcher(const Rules& rules, Evaluation evaluation, std::size_t table_bytes);
+  // weights: see `evaluate`; they must outlive this.
+  Searcher(const Rules& rules, Evaluation evaluation, std::size_t table_bytes, const PatternWeights* weights = nullptr);
   ~Searcher();
   Searcher(Searcher&&) noexcept;
 
