@@ -1,7 +1,6 @@
 // tracker_server track: the poses of a film, one line a frame.
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -11,19 +10,19 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
+#include "protocol/daemon/step_times.hpp"
+#include "protocol/daemon/stop_signal.hpp"
 #include "protocol/vocabulary/pose_eigen.hpp"
 #include "tracker_server/camera/camera.hpp"
 #include "tracker_server/camera/camera_json.hpp"
+#include "tracker_server/pipeline/pose_log.hpp"
 #include "tracker_server/pose/board_tracker.hpp"
-#include "tracker_server/pose/projection.hpp"
 #include "tracker_server/pose/start_file.hpp"
 #include "tracker_server/programs/corners.hpp"
 #include "tracker_server/programs/programs.hpp"
 
 namespace counterpart {
 namespace {
-
-volatile std::sig_atomic_t stop_asked = 0;
 
 struct TrackArguments {
   std::string sequence;
@@ -39,41 +38,20 @@ struct TrackArguments {
   std::string report;
 };
 
-const char* name_of(TrackStatus status) {
-  switch (status) {
-    case TrackStatus::ok:
-    case TrackStatus::relocalised:
-      return "ok";
-    case TrackStatus::coasting:
-      return "coasting";
-    case TrackStatus::lost:
-      break;
-  }
-  return "lost";
+PoseEstimate estimate_of(const TrackedBoard& seen, const FrameStamp& stamp) {
+  PoseEstimate pose;
+  pose.stamp = stamp;
+  pose.status = seen.status;
+  pose.X_CB = to_pose(seen.X_CB);
+  pose.rms_px = static_cast<float>(seen.fit.rms_px);
+  return pose;
 }
 
-void write_row(std::ostream& out, FrameId frame, const TrackedBoard& seen, const BoardGeometry& board, double ms) {
-  out << frame;
-  if (seen.status == TrackStatus::lost) {
-    out << ",,,,,,,,lost,,," << ms << ",,,,,,,,\n";
-    return;
-  }
-  const Pose pose = to_pose(seen.X_CB);
-  for (double value : pose.p) out << ',' << value;
-  for (double value : pose.q) out << ',' << value;
-  out << ',' << name_of(seen.status) << ',' << seen.fit.rms_px << ',' << seen.camera.fx << ',' << ms;
-  const double half = 0.5 * board.squares * board.square_size_m;
-  for (const auto& [x, y] : {std::pair{-half, half}, {half, half}, {half, -half}, {-half, -half}}) {
-    const Eigen::Vector2d p = project(seen.camera, seen.X_CB * Eigen::Vector3d(x, y, 0));
-    out << ',' << p.x() << ',' << p.y();
-  }
-  out << '\n';
-}
-
-double percentile(std::vector<double> values, double share) {
+double median(std::vector<double> values) {
   if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 Result<BoardTracker> make_tracker(const TrackArguments& arguments, const Camera& camera) {
@@ -121,16 +99,16 @@ Result<void> track(const TrackArguments& arguments) {
   board.squares = arguments.squares;
   board.square_size_m = arguments.square_size_m;
 
-  std::ofstream out(arguments.poses);
-  if (!out) return failure(ErrorCode::io, "Cannot write " + arguments.poses + ".");
-  out.precision(9);
-  out << "frame,tx,ty,tz,qw,qx,qy,qz,status,rms_px,fx,ms,x0,y0,x1,y1,x2,y2,x3,y3\n";
+  PoseLog poses;
+  if (auto opened = poses.open(arguments.poses); !opened) return opened;
 
-  std::vector<double> times_ms, rms_px;
+  StepTimes times;
+  std::vector<double> rms_px;
   std::map<std::string, int> counts{{"ok", 0}, {"coasting", 0}, {"lost", 0}};
+  int frames = 0;
   double focal_px = 0;
-  std::signal(SIGINT, [](int) { stop_asked = 1; });
-  while (stop_asked == 0) {
+  catch_stop_signals();
+  while (!stop_requested()) {
     auto next = (*camera)->next();
     if (!next) return tl::make_unexpected(next.error());
     if (!*next) break;
@@ -139,33 +117,35 @@ Result<void> track(const TrackArguments& arguments) {
     const Pyramid pyramid = build_pyramid(frame.image_bgr, 3);
     const TrackedBoard seen = tracker->track(frame.image_bgr, pyramid, frame.stamp.capture_ns);
     const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    write_row(out, frame.stamp.frame_id, seen, board, ms);
-    times_ms.push_back(ms);
+    poses.add(estimate_of(seen, frame.stamp), seen.camera, board, ms);
+    times.add("ms", ms);
+    ++frames;
     ++counts[name_of(seen.status)];
     if (seen.status != TrackStatus::lost) {
       rms_px.push_back(seen.fit.rms_px);
       focal_px = seen.camera.fx;
     }
   }
-  if (!out.flush()) return failure(ErrorCode::io, "Cannot write " + arguments.poses + "; is the disk full?");
-  spdlog::info("{} frames: {} ok, {} coasting, {} lost; median {:.2f} ms", times_ms.size(), counts["ok"],
-               counts["coasting"], counts["lost"], percentile(times_ms, 0.5));
+  if (auto closed = poses.close(); !closed) return closed;
+  const nlohmann::json ms = frames > 0 ? times.report().at("ms") : nlohmann::json::object();
+  spdlog::info("{} frames: {} ok, {} coasting, {} lost; median {:.2f} ms", frames, counts["ok"], counts["coasting"],
+               counts["lost"], ms.value("median", 0.0));
 
   if (!arguments.report.empty()) {
-    const nlohmann::ordered_json report = {{"frames", times_ms.size()},
+    const nlohmann::ordered_json report = {{"frames", frames},
                                            {"ok", counts["ok"]},
                                            {"coasting", counts["coasting"]},
                                            {"lost", counts["lost"]},
-                                           {"ms_median", percentile(times_ms, 0.5)},
-                                           {"ms_p95", percentile(times_ms, 0.95)},
-                                           {"rms_px_median", percentile(rms_px, 0.5)},
+                                           {"ms_median", ms.value("median", 0.0)},
+                                           {"ms_p95", ms.value("p95", 0.0)},
+                                           {"rms_px_median", median(rms_px)},
                                            {"fx", focal_px}};
     std::ofstream file(arguments.report);
     file << report.dump(2) << '\n';
     if (!file.flush()) return failure(ErrorCode::io, "Cannot write " + arguments.report + ".");
   }
   if (counts["ok"] == 0)
-    return failure(ErrorCode::not_found, "The board was not found in any of the " + std::to_string(times_ms.size()) +
+    return failure(ErrorCode::not_found, "The board was not found in any of the " + std::to_string(frames) +
                                              " frames; is --squares right? --init corners=... tells where it is.");
   return {};
 }
