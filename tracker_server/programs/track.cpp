@@ -120,7 +120,7 @@ Result<void> track(const TrackArguments& arguments) {
     poses.add(estimate_of(seen, frame.stamp), seen.camera, board, ms);
     times.add("ms", ms);
     ++frames;
-    ++counts[name_of(seen.status)];
+    ++counts[csv_word(seen.status)];
     if (seen.status != TrackStatus::lost) {
       rms_px.push_back(seen.fit.rms_px);
       focal_px = seen.camera.fx;
