@@ -14,10 +14,10 @@ constexpr std::array<LevelPlan, highest_level> plans{{
     {Evaluation::material, 2, 0, 30},
     {Evaluation::plain, 3, 0, 12},
     {Evaluation::plain, 5, 20'000, 0},
-    {Evaluation::plain, 7, 60'000, 0},
-    {Evaluation::plain, 9, 150'000, 0},
-    {Evaluation::plain, 12, 500'000, 0},
-    {Evaluation::plain, 60, 1'500'000, 0},
+    {Evaluation::trained, 7, 60'000, 0},
+    {Evaluation::trained, 9, 150'000, 0},
+    {Evaluation::trained, 12, 500'000, 0},
+    {Evaluation::trained, 60, 1'500'000, 0},
 }};
 
 }  // namespace

@@ -44,7 +44,8 @@ struct Level {
 
 class HubEngine {
  public:
-  HubEngine(std::istream& in, std::ostream& out) : in_(in), out_(out), record_(rules_, start_position(rules_)) {}
+  HubEngine(std::istream& in, std::ostream& out, const std::function<const EndgameTables*()>& endgames)
+      : in_(in), out_(out), ask_for_endgames_(endgames), record_(rules_, start_position(rules_)) {}
   ~HubEngine() { stop_search(); }
 
   void run() {
@@ -84,7 +85,8 @@ class HubEngine {
     } else if (command == "set-param") {
       set_parameter(line);
     } else if (command == "init") {
-      searcher();
+      if (endgames_ == nullptr && ask_for_endgames_) endgames_ = ask_for_endgames_();
+      searcher().use_endgames(endgames_);
       put("ready");
     } else if (command == "new-game") {
       searcher().clear();
@@ -135,6 +137,7 @@ class HubEngine {
     if (!searcher_) {
       const Evaluation evaluation = level_of_play_ > 0 ? plan_of_level(level_of_play_).evaluation : evaluation_;
       searcher_ = std::make_unique<Searcher>(rules_, evaluation, static_cast<std::size_t>(hash_mb_) << 20);
+      searcher_->use_endgames(endgames_);
     }
     return *searcher_;
   }
@@ -276,6 +279,8 @@ class HubEngine {
 
   std::istream& in_;
   std::ostream& out_;
+  const std::function<const EndgameTables*()>& ask_for_endgames_;
+  const EndgameTables* endgames_ = nullptr;
   const Rules& rules_ = international_rules;
   int level_of_play_ = 0;  // 0: full strength within the limits of `level`
   Evaluation evaluation_ = Evaluation::trained;
@@ -297,8 +302,8 @@ class HubEngine {
 
 }  // namespace
 
-void run_hub_engine(std::istream& in, std::ostream& out) {
-  HubEngine(in, out).run();
+void run_hub_engine(std::istream& in, std::ostream& out, const std::function<const EndgameTables*()>& endgames) {
+  HubEngine(in, out, endgames).run();
 }
 
 }  // namespace counterpart

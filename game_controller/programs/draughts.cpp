@@ -1,13 +1,16 @@
 // draughts: counts moves, judges, plays, and talks to other draughts programs.
+#include <bit>
 #include <chrono>
 #include <cstdio>
 #include <functional>
 #include <iostream>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "game_controller/engine/endgame.hpp"
 #include "game_controller/engine/level.hpp"
 #include "game_controller/links/hub_engine.hpp"
 #include "game_controller/notation/fen.hpp"
@@ -60,9 +63,16 @@ int run_best(const Rules& rules, const std::string& fen, double move_time_s) {
     return complain({ErrorCode::invalid_argument, "there is no legal move in " + fen + "; the game is over there."},
                     failed);
   }
-  const auto start = Clock::now();
+  auto start = Clock::now();
   Searcher searcher(rules, Evaluation::trained, std::size_t{64} << 20);
+  std::optional<EndgameTables> endgames;
+  constexpr int tables_soon_matter = 8;  // pieces
+  if (rules.id == RulesId::international && std::popcount(position->light | position->dark) <= tables_soon_matter) {
+    endgames = EndgameTables::load_or_generate();
+    searcher.use_endgames(&*endgames);
+  }
   SearchLimits limits;
+  start = Clock::now();  // loading the tables is no thinking
   limits.give_up = [&] { return seconds_since(start) >= move_time_s; };
   const SearchReport report = searcher.search(*position, {}, limits);
   nlohmann::ordered_json best;
@@ -209,6 +219,12 @@ int main(int argc, char** argv) {
     const auto played = run_dxp(dxp, std::cout, std::cerr);
     return played ? 0 : complain(played.error(), failed);
   }
-  if (hub_command->parsed()) run_hub_engine(std::cin, std::cout);
+  if (hub_command->parsed()) {
+    std::optional<EndgameTables> endgames;
+    run_hub_engine(std::cin, std::cout, [&]() -> const EndgameTables* {
+      endgames = EndgameTables::load_or_generate();
+      return &*endgames;
+    });
+  }
   return 0;
 }

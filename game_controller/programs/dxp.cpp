@@ -4,12 +4,14 @@
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <optional>
 #include <ostream>
 
 #include <nlohmann/json.hpp>
 #include <poll.h>
 #include <unistd.h>
 
+#include "game_controller/engine/endgame.hpp"
 #include "game_controller/engine/level.hpp"
 #include "game_controller/links/dxp_game.hpp"
 #include "game_controller/notation/fen.hpp"
@@ -81,6 +83,10 @@ class DxpProgram {
     player_.on_chat = [this](const std::string& text) { log_ << "chat: " << text << std::endl; };
     player_.give_up = [this] { return instructions_.quit(); };
     player_.patience_s = options.patience_s;
+    if (options.level == 0) {
+      endgames_ = EndgameTables::load_or_generate();
+      searcher_.use_endgames(&*endgames_);
+    }
   }
 
   Result<void> serve() {
@@ -199,6 +205,7 @@ class DxpProgram {
   std::ostream& log_;
   Instructions instructions_;
   LevelPlan plan_;
+  std::optional<EndgameTables> endgames_;
   Searcher searcher_;
   DxpPlayer player_;
   int played_ = 0;

@@ -17,8 +17,7 @@ constexpr std::size_t table_bytes = std::size_t{1} << 20;
 constexpr int surely_decided = win_value - 500;
 constexpr int longest_game_plies = 240;
 constexpr int unfair_start = 2 * man_value;
-constexpr int patience_with_kings_plies = 16;  // both sides have one: by then what can be won soon has been won
-constexpr int winning_majority = 3;            // more pieces than the other side, when that patience ends
+constexpr int patience_with_kings_plies = 12;  // both sides have one: by then what can be won has been won
 
 bool can_capture_at_all(const Position& p) {
   Position swapped = p;
@@ -69,11 +68,7 @@ class Lecture {
         result = value > 0 ? 1.0F : 0.0F;
         break;
       }
-      if ((p.light & p.kings) != 0 && (p.dark & p.kings) != 0 && ++with_kings > patience_with_kings_plies) {
-        const int more = std::popcount(p.light) - std::popcount(p.dark);
-        result = more >= winning_majority ? 1.0F : more <= -winning_majority ? 0.0F : 0.5F;
-        break;
-      }
+      if ((p.light & p.kings) != 0 && (p.dark & p.kings) != 0 && ++with_kings > patience_with_kings_plies) break;
       if (!can_capture_at_all(p)) {
         lessons_.push_back({p, 0.5F, static_cast<float>(value) / man_value, game});
       }

@@ -16,11 +16,19 @@ std::string name_field(std::string name) {
 }
 
 TEST(DxpMessage, reads_and_writes_the_published_layouts) {
-  for (const std::string text :
-       {"M0012061100", "M001205250422122320", "E10", "E01", "CHello there", "B005Z", "K1",
-        ("R01" + name_field("Scan") + "W060000A").c_str(),
-        ("R01" + name_field("x y") + "Z005075BZ" + std::string(20, 'z') + std::string(29, 'e') + "W").c_str(),
-        ("A" + name_field("Dam") + "0").c_str()}) {
+  const std::vector<std::string> layouts{
+      "M0012061100",
+      "M001205250422122320",
+      "E10",
+      "E01",
+      "CHello there",
+      "B005Z",
+      "K1",
+      "R01" + name_field("Scan") + "W060000A",
+      "R01" + name_field("x y") + "Z005075BZ" + std::string(20, 'z') + std::string(29, 'e') + "W",
+      "A" + name_field("Dam") + "0",
+  };
+  for (const std::string& text : layouts) {
     const auto message = read_dxp(text);
     ASSERT_TRUE(message) << text << ": " << message.error().message;
     EXPECT_EQ(write_dxp(*message), text);
@@ -137,7 +145,7 @@ TEST(DxpGame, an_illegal_move_loses) {
 
 TEST(DxpGame, death_silence_and_nonsense_lose) {
   EXPECT_EQ(game_against([](Channel& c) { c = Channel(); }).why, "closed");
-  EXPECT_EQ(game_against([](Channel& c) { static_cast<void>(c.receive('\0', 200, 1)); }, 0.3).why, "timeout");
+  EXPECT_EQ(game_against([](Channel& c) { static_cast<void>(c.receive('\0', 200, 4)); }, 1).why, "timeout");
   const auto nonsense = game_against([](Channel& c) { static_cast<void>(c.send(std::string(5'000, 'x'))); });
   EXPECT_EQ(nonsense.why, "bad_message");
   EXPECT_EQ(nonsense.result, GameResult::dark_wins);

@@ -66,7 +66,7 @@ TEST(ReadPdn, names_line_and_column) {
       {"1. 32-28\n (1. 33-28", "line 2, column 2"},
       {"[Event x]", "line 1, column 8"},
       {"\n[FEN \"W:W99:B1\"] *", "line 2, column 6"},
-      {"[GameType \"23\"] *", "line 1, column 2"},
+      {"[GameType \"23\"] *", "line 1, column 11"},
       {"1. 32-28 ) *", "line 1, column 10"},
       {"[Event \"x", "line 1, column 8"},
       {"/FAN \"x\"/", "line 1, column 1"},
