@@ -70,6 +70,8 @@ void Actor::appear(const Place& place, Posture posture, double now_s) {
   channels_ = {};
   looked_ = false;
   begin(now_s);
+  // What starts in the same step starts from hands that rest.
+  for (const std::size_t s : {left_side, right_side}) channels_[s].step(rest_source(), rest(s), now_s);
 }
 
 std::uint64_t Actor::rest_source() const {

@@ -95,7 +95,7 @@ TEST(Director, PointsWithTheForefingerAtAPlaceAndHoldsThere) {
     if (distance < 0.035F && stretched && others_bent) ++frames_there;
   }
   EXPECT_EQ(r.said[1].back().state, FeedbackState::finished) << r.said[1].back().code;
-  EXPECT_LT(r.said[1].back().gap_mm, 1);
+  for (const Feedback& f : r.said[1]) EXPECT_LT(f.gap_mm, 1) << f.phase;
   EXPECT_GE(r.said[1].back().gap_mm, 0);
   EXPECT_NEAR(frames_there * 0.04, 1.1, 0.3) << "seconds at the place";
 }
