@@ -1,85 +1,11 @@
 #include "vhd_renderer/motion/director.hpp"
 
-#include <map>
+#include <cmath>
 
-#include <gtest/gtest.h>
-
-#include "vhd_renderer/body/mannequin.hpp"
-#include "vhd_renderer/motion/anatomy.hpp"
+#include "tests/vhd_renderer/motion/rehearsal.hpp"
 
 namespace counterpart {
 namespace {
-
-constexpr std::int64_t frame_ns = 40'000'000;
-
-Scene board_with(const std::vector<std::pair<std::string, int>>& pieces) {
-  Scene scene;
-  scene.revision = 1;
-  for (const auto& [name, square] : pieces) {
-    scene.pieces.push_back({name, Side::light, false, false, centre_of_square_B(square, scene.board)});
-  }
-  return scene;
-}
-
-// Runs a director frame by frame and keeps what it said.
-struct Rehearsal {
-  Figure figure = mannequin();
-  Director director{figure};
-  std::int64_t now_ns = 0;
-  Performance last;
-  std::map<std::uint64_t, std::vector<Feedback>> said;
-
-  void frame(const std::vector<Command>& commands = {}, const Scene* scene = nullptr) {
-    DirectorInputs in;
-    in.now_ns = now_ns;
-    in.commands = commands;
-    in.scene = scene;
-    last = director.step(in);
-    now_ns += frame_ns;
-    for (const Feedback& f : last.feedback) said[f.command_id].push_back(f);
-  }
-
-  bool ended(std::uint64_t id) const {
-    const auto found = said.find(id);
-    return found != said.end() && is_final(found->second.back().state);
-  }
-
-  void run_until_ended(std::uint64_t id, int most_frames = 800) {
-    for (int i = 0; i < most_frames && !ended(id); ++i) frame();
-    EXPECT_TRUE(ended(id)) << id;
-  }
-
-  Eigen::Vector3f joint(const std::string& name) const {
-    for (std::size_t j = 0; j < figure.joints.size(); ++j) {
-      if (figure.joints[j].name == name) return last.X_BJ[j].translation();
-    }
-    ADD_FAILURE() << name;
-    return Eigen::Vector3f::Zero();
-  }
-
-  Eigen::Vector3f piece(const std::string& name) const {
-    for (const StagedPiece& p : last.pieces) {
-      if (p.name == name) return p.X_BP.translation();
-    }
-    ADD_FAILURE() << name;
-    return Eigen::Vector3f::Zero();
-  }
-
-  void take_seat() {
-    Command sit;
-    sit.id = 1'000'000;
-    sit.action = Navigate{"seat", {}, 0, "walk"};
-    frame({sit});
-    run_until_ended(sit.id);
-  }
-};
-
-Command grasp(std::uint64_t id, const std::string& piece, const std::vector<Point3>& path, Hand hand = Hand::any) {
-  Command c;
-  c.id = id;
-  c.action = Grasp{piece, path, hand, "", 0};
-  return c;
-}
 
 TEST(Director, WalksInAndSitsDownWithinNineSeconds) {
   Rehearsal r;
@@ -134,6 +60,86 @@ TEST(Director, RefusesWhatCannotBeWithACode) {
   r.frame({grasp(6, "light_32", {to})});
   r.run_until_ended(6);
   EXPECT_EQ(r.said[6].back().state, FeedbackState::finished);
+}
+
+TEST(Director, IsAtOnceWhereTheGaitIsInstant) {
+  Rehearsal r;
+  r.take_seat("instant");
+  EXPECT_EQ(r.now_ns, frame_ns) << "one step";
+  EXPECT_EQ(r.said[1'000'000].back().state, FeedbackState::finished);
+  const Eigen::Vector3f hips = r.joint("HumanoidRoot");
+  EXPECT_NEAR(hips.y(), -0.51, 0.1);
+  EXPECT_NEAR(r.joint("l_hip").z(), -0.74 + 0.53, 0.03) << "he sits in the very frame";
+  const Eigen::Vector3f wrist = r.joint("r_wrist");
+  r.frame();
+  EXPECT_LT((r.joint("HumanoidRoot") - hips).norm(), 0.005);
+  EXPECT_LT((r.joint("r_wrist") - wrist).norm(), 0.01) << "the hands lie where they belong";
+}
+
+TEST(Director, PointsWithTheForefingerAtAPlaceAndHoldsThere) {
+  Rehearsal r;
+  r.take_seat("instant");
+  const Point3 place{centre_of_square_B(23, BoardGeometry{})[0], centre_of_square_B(23, BoardGeometry{})[1], 0.05};
+  Command point;
+  point.id = 1;
+  point.action = Grasp{"", {place}, Hand::any, "point", 0};
+  r.frame({point});
+  const Eigen::Vector3f target(static_cast<float>(place[0]), static_cast<float>(place[1]), 0.05F);
+  int frames_there = 0;
+  for (int i = 0; i < 200 && !r.ended(1); ++i) {
+    r.frame();
+    // The last joint of the finger is some 2.5 cm before its tip.
+    const float distance = (r.joint("r_index3") - target).norm();
+    const bool stretched = (r.joint("r_index1") - r.joint("r_index3")).norm() > 0.0675F;     // 0.068 straight
+    const bool others_bent = (r.joint("r_middle1") - r.joint("r_middle3")).norm() < 0.058F;  // 0.073 at rest
+    if (distance < 0.035F && stretched && others_bent) ++frames_there;
+  }
+  EXPECT_EQ(r.said[1].back().state, FeedbackState::finished) << r.said[1].back().code;
+  for (const Feedback& f : r.said[1]) EXPECT_LT(f.gap_mm, 1) << f.phase;
+  EXPECT_GE(r.said[1].back().gap_mm, 0);
+  EXPECT_NEAR(frames_there * 0.04, 1.1, 0.3) << "seconds at the place";
+}
+
+TEST(Director, AHandThatThinksComesDownWhenThereIsSomethingToDo) {
+  Rehearsal r;
+  const Scene scene = board_with({{"light_32", 32}});
+  r.frame({}, &scene);
+  r.take_seat("instant");
+  Command think;
+  think.id = 1;
+  think.action = Keyframe{"think", 1, 1, BodyPart::whole, true};
+  r.frame({think});
+  for (int i = 0; i < 50; ++i) r.frame();
+  EXPECT_GT(r.joint("r_wrist").z(), 0.15) << "at the chin";
+  r.frame({grasp(2, "light_32", {centre_of_square_B(28, scene.board)}, Hand::left)});
+  for (int i = 0; i < 40; ++i) r.frame();
+  EXPECT_EQ(r.said[1].back().state, FeedbackState::finished);
+  EXPECT_LT(r.joint("r_wrist").z(), 0.08) << "on the table while the other hand carries";
+  r.run_until_ended(2);
+  EXPECT_EQ(r.said[2].back().state, FeedbackState::finished) << r.said[2].back().code;
+}
+
+TEST(Director, DoesNotThinkTheSameWayTwice) {
+  Rehearsal r;
+  r.take_seat("instant");
+  std::vector<Eigen::Vector3f> right;
+  std::vector<Eigen::Vector3f> left;
+  for (std::uint64_t id = 1; id <= 3; ++id) {
+    Command think;
+    think.id = id;
+    think.action = Keyframe{"think", 1, 1, BodyPart::whole, false};
+    r.frame({think});
+    for (int i = 0; i < 50; ++i) r.frame();
+    right.push_back(r.joint("r_wrist"));
+    left.push_back(r.joint("l_wrist"));
+    r.run_until_ended(id);
+    for (int i = 0; i < 40; ++i) r.frame();
+  }
+  EXPECT_GT(right[0].z(), 0.15);
+  EXPECT_LT(right[1].z(), 0.08);
+  EXPECT_LT(left[1].z(), 0.08);
+  EXPECT_GT(left[2].z(), 0.15);
+  EXPECT_LT(right[2].z(), 0.08);
 }
 
 }  // namespace
