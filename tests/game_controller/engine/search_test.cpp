@@ -96,7 +96,7 @@ TEST(Evaluate, is_the_same_for_both_sides) {
   for (const int square : squares_of_bits(light.kings, 10)) dark.kings |= square_mask(51 - square, 10);
   dark.turn = Side::dark;
   for (const Evaluation e : {Evaluation::material, Evaluation::plain}) {
-    EXPECT_EQ(evaluate(rules, e, light), evaluate(rules, e, dark));
+    EXPECT_EQ(evaluate(rules, e, nullptr, light), evaluate(rules, e, nullptr, dark));
   }
 }
 
