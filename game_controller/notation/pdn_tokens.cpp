@@ -38,10 +38,8 @@ void PdnTokens::skip_blanks_and_comment_lines() {
     const char c = text_[at_];
     if (c == ';' || (c == '%' && place_.column == 1)) {
       while (!at_end() && text_[at_] != '\n') take();
-    } else if (is_blank(c) || text_.substr(at_, 3) == "\xEF\xBB\xBF") {
+    } else if (is_blank(c)) {
       take();
-    } else if (at_ > 0 && at_ < 3 && text_.substr(0, 3) == "\xEF\xBB\xBF") {
-      take();  // the rest of a byte order mark
     } else {
       return;
     }

@@ -37,7 +37,10 @@ struct PdnToken {
 
 class PdnTokens {
  public:
-  explicit PdnTokens(std::string_view text) : text_(text) {}
+  explicit PdnTokens(std::string_view text) : text_(text) {
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    if (text_.substr(0, 3) == byte_order_mark) text_.remove_prefix(3);
+  }
 
   [[nodiscard]] Result<PdnToken> next();
 
