@@ -9,7 +9,7 @@
 
 namespace counterpart {
 
-const char* name_of(TrackStatus status) {
+const char* csv_word(TrackStatus status) {
   switch (status) {
     case TrackStatus::ok:
     case TrackStatus::relocalised:
@@ -42,7 +42,7 @@ void PoseLog::add(const PoseEstimate& pose, const Intrinsics& camera, const std:
   }
   for (const double value : pose.X_CB.p) out_ << ',' << value;
   for (const double value : pose.X_CB.q) out_ << ',' << value;
-  out_ << ',' << name_of(pose.status) << ',' << pose.rms_px << ',' << camera.fx << ',' << ms;
+  out_ << ',' << csv_word(pose.status) << ',' << pose.rms_px << ',' << camera.fx << ',' << ms;
   if (!board) {
     out_ << ",,,,,,,,\n";
     return;

@@ -29,6 +29,6 @@ class PoseLog {
   std::ofstream out_;
 };
 
-const char* name_of(TrackStatus status);  // "ok" (relocalised too), "coasting", "lost"
+const char* csv_word(TrackStatus status);  // "ok" (relocalised too), "coasting", "lost"
 
 }  // namespace counterpart

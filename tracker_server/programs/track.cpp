@@ -184,7 +184,7 @@ Result<void> track(const TrackArguments& arguments) {
     poses.add(seen.pose, seen.camera, board, ms);
     times.add("ms", ms);
     ++frames;
-    ++counts[name_of(seen.pose.status)];
+    ++counts[csv_word(seen.pose.status)];
     if (usable(seen.pose)) {
       rms_px.push_back(static_cast<double>(seen.pose.rms_px));
       focal_px = seen.camera.fx;
