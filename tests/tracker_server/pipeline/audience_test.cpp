@@ -1,6 +1,7 @@
 #include "tracker_server/pipeline/audience.hpp"
 
 #include <functional>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -94,6 +95,24 @@ TEST_F(AudienceOfOne, FeedbackOfThePrimaryReachesTheGameAndFrameDoneIsNoticed) {
   const Heard heard = audience_->take_heard();
   ASSERT_EQ(heard.feedback.size(), 1u);
   EXPECT_EQ(heard.feedback[0].command_id, 3u);
+}
+
+TEST_F(AudienceOfOne, AGoodbyeIsHeardEvenByAPeerThatIsTalking) {
+  seat(Role::renderer);
+  pass([&] { return audience_->has_renderer(); });
+  for (FrameId frame = 0; frame < 200; ++frame) peer_->broadcast(FrameDone{{frame, 0}});
+  std::optional<PeerLeft> left;
+  const auto listen = [&] {
+    for (const Inbound& inbound : peer_->receive(0)) {
+      if (const auto* found = std::get_if<PeerLeft>(&inbound)) left = *found;
+    }
+  };
+  audience_->say_goodbye("the camera has ended");
+  for (int i = 0; i < 200 && !left; ++i) listen();
+  audience_.reset();
+  for (int i = 0; i < 200 && !left; ++i) listen();
+  ASSERT_TRUE(left);
+  EXPECT_TRUE(left->said_goodbye) << left->reason.message;
 }
 
 TEST_F(AudienceOfOne, ADirectorWithoutARendererHearsWhyNothingHappens) {
