@@ -31,7 +31,7 @@ EdgeHit search_edge(const cv::Mat1b& picture, const EdgeProbe& probe, int reach,
   const float bottom = static_cast<float>(picture.rows) - 1.001F;
   // Written so that NaN counts as outside.
   if (!(x0 >= 0 && x0 < right && x1 >= 0 && x1 < right && y0 >= 0 && y0 < bottom && y1 >= 0 && y1 < bottom))
-    return {0, 0, EdgeVerdict::outside};
+    return {0, 0, 0, EdgeVerdict::outside};
 
   const std::uint8_t* pixels = picture.data;
   const auto stride = static_cast<std::ptrdiff_t>(picture.step[0]);
@@ -58,15 +58,15 @@ EdgeHit search_edge(const cv::Mat1b& picture, const EdgeProbe& probe, int reach,
   for (int k = 1; k < steps; ++k)
     if (profile.step[static_cast<std::size_t>(k)] > profile.step[static_cast<std::size_t>(best)]) best = k;
   const float strength = profile.step[static_cast<std::size_t>(best)];
-  if (strength < min_contrast) return {0, strength, EdgeVerdict::low_contrast};
+  if (strength < min_contrast) return {0, strength, 0, EdgeVerdict::low_contrast};
   // At either end the true maximum may lie beyond the reach.
-  if (best == 0 || best == steps - 1) return {0, strength, EdgeVerdict::low_contrast};
+  if (best == 0 || best == steps - 1) return {0, strength, 0, EdgeVerdict::low_contrast};
 
   for (int k = 1; k < steps - 1; ++k) {
     if (std::abs(k - best) < rival_distance) continue;
     const auto i = static_cast<std::size_t>(k);
     const bool peak = profile.step[i] >= profile.step[i - 1] && profile.step[i] >= profile.step[i + 1];
-    if (peak && profile.step[i] > rival_strength * strength) return {0, strength, EdgeVerdict::ambiguous};
+    if (peak && profile.step[i] > rival_strength * strength) return {0, strength, 0, EdgeVerdict::ambiguous};
   }
 
   const float before = profile.step[static_cast<std::size_t>(best - 1)];
@@ -75,11 +75,9 @@ EdgeHit search_edge(const cv::Mat1b& picture, const EdgeProbe& probe, int reach,
   const float fraction = bend < -1e-6F ? 0.5F * (before - after) / bend : 0.0F;
   EdgeHit hit;
   hit.distance = static_cast<float>(best - reach) + fraction;
-  hit.contrast = sign * strength;
-  if (probe.polarity == 0) {
-    const float* g = profile.grey.data() + best;
-    hit.contrast = 0.5F * (g[3] + g[4] - g[0] - g[1]);
-  }
+  const float* g = profile.grey.data() + best;
+  hit.contrast = 0.5F * (g[3] + g[4] - g[0] - g[1]);
+  hit.grey = 0.25F * (g[0] + g[1] + g[3] + g[4]);
   hit.verdict = EdgeVerdict::accepted;
   return hit;
 }

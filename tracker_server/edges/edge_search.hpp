@@ -16,7 +16,7 @@ enum class EdgeVerdict : std::uint8_t {
   low_contrast = 3,    // no edge strong enough
   ambiguous = 4,       // two edges about equally good
   outlier = 5,         // an edge, but not where all the others say
-  wrong_contrast = 6,  // an edge of quite another strength than this one has: something lies over it
+  wrong_contrast = 6,  // an edge of quite another strength or brightness than this one has: something lies over it
   not_searched = 7,
 };
 
@@ -30,6 +30,7 @@ struct EdgeProbe {
 struct EdgeHit {
   float distance = 0;  // pixels along the normal to the edge
   float contrast = 0;  // grey levels of the step, > 0 if brighter towards +n
+  float grey = 0;      // grey level half way up the step
   EdgeVerdict verdict = EdgeVerdict::not_searched;
 };
 

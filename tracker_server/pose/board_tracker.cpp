@@ -24,6 +24,7 @@ constexpr int most_coasting = 2;
 constexpr double least_share = 0.14;
 constexpr double least_support = 0.13;
 constexpr double largest_rms_px = 1.6;
+constexpr double most_contradicted = 0.09;
 constexpr std::size_t least_points = 30;
 
 const std::vector<FitRound> usual_rounds = {{1, 6, 3, 2}, {0, 4, 2, 2}, {0, 3, 1, 2}};
@@ -33,6 +34,10 @@ const std::vector<FitRound> settle_rounds = {{1, 5, 2, 2}, {0, 5, 1, 3}, {0, 3, 
 // Of one picture's word about the focal length, how much is believed: its errors are alike from frame to frame.
 constexpr double focal_trust = 0.05;
 constexpr double focal_memory = 0.98;
+
+// A zoom goes on as it went: the gain of its rate belongs to that of the focal length itself, about 0.3 (an alpha-beta
+// filter, critically damped). Not before the focal length is known to 5 %: until then its changes are corrections.
+constexpr double zoom_rate_gain = 0.15, fastest_zoom = 0.03, known_focal_information = 1 / (0.05 * 0.05);
 
 Matrix3d quarter_turn(int n) {
   Matrix3d turn;
@@ -90,12 +95,26 @@ void BoardTracker::forget() {
   start_X_CB_.reset();
   start_corners_.reset();
   motion_.forget();
-  contrast_ = 0;
   ever_seen_ = false;
+  forget_looks();
+}
+
+void BoardTracker::predict_zoom() {
+  if (!focal_.estimate || !tracking_) return;
+  focal_.log_focal += zoom_rate_;
+  camera_.fx *= std::exp(zoom_rate_);
+  camera_.fy *= std::exp(zoom_rate_);
+}
+
+// How bright the edges were; while the board is out of sight lamps and pieces may change.
+void BoardTracker::forget_looks() {
+  contrast_ = 0;
+  last_support_ = 0;
   for (EdgeSample& sample : samples_) {
     const ModelSegment& segment = model_.segments[static_cast<std::size_t>(sample.segment)];
     sample.polarity = segment.polarity;
     sample.contrast = 0;
+    sample.grey = 0;
   }
 }
 
@@ -126,7 +145,8 @@ BoardTracker::Attempt BoardTracker::attempt(const Pyramid& pyramid, const Isomet
   result.check = check_chequer(pyramid.levels[0], options_.board, result.fit.camera, result.fit.X_CM, contrast_);
   const bool from_above = (result.fit.X_CM.inverse().translation()).z() > 0;
   result.good = from_above && result.fit.accepted >= least_points && result.fit.share() >= least_share &&
-                result.fit.rms_px <= largest_rms_px && result.check.support >= least_support && !result.check.shifted();
+                result.fit.rms_px <= largest_rms_px && result.check.support >= least_support &&
+                result.check.contradicted <= most_contradicted && !result.check.shifted();
   return result;
 }
 
@@ -171,12 +191,17 @@ std::optional<BoardTracker::Attempt> BoardTracker::find(const cv::Mat& picture_b
 
 void BoardTracker::learn(const Attempt& attempt) {
   constexpr float rate = 0.1F;
+  // A piece that moved or a lamp changes how an edge looks where it is; what lies over the board shows edges anywhere.
+  constexpr float rate_if_changed = 0.05F, where_it_is_px = 0.8F;
   for (std::size_t i = 0; i < attempt.fit.hits.size(); ++i) {
     const EdgeHit& hit = attempt.fit.hits[i];
-    if (hit.verdict != EdgeVerdict::accepted && hit.verdict != EdgeVerdict::wrong_contrast) continue;
+    const bool changed = hit.verdict == EdgeVerdict::wrong_contrast && std::abs(hit.distance) < where_it_is_px;
+    if (hit.verdict != EdgeVerdict::accepted && !changed) continue;
     EdgeSample& sample = samples_[attempt.fit.samples[i]];
     const float seen = std::abs(hit.contrast);
-    sample.contrast = sample.contrast > 0 ? sample.contrast + rate * (seen - sample.contrast) : seen;
+    const float step = sample.contrast > 0 ? (changed ? rate_if_changed : rate) : 1;
+    sample.contrast += step * (seen - sample.contrast);
+    sample.grey += step * (hit.grey - sample.grey);
     if (sample.polarity == 0 && hit.verdict == EdgeVerdict::accepted) sample.polarity = hit.contrast > 0 ? 1 : -1;
   }
   const double seen = attempt.check.contrast;
@@ -190,10 +215,14 @@ void BoardTracker::accept(const Attempt& attempt, std::int64_t time_ns) {
     const Eigen::Matrix<double, 6, 6> P = attempt.fit.information.topLeftCorner<6, 6>();
     const Eigen::Matrix<double, 6, 1> c = attempt.fit.information.col(6).head<6>();
     const double own = attempt.fit.information(6, 6) - c.dot(Eigen::Matrix<double, 6, 1>(solve_normal(P, c)));
+    const double innovation = std::log(camera_.fx) - focal_.log_focal;
+    if (focal_.information > known_focal_information)
+      zoom_rate_ = std::clamp(zoom_rate_ + zoom_rate_gain * innovation, -fastest_zoom, fastest_zoom);
     focal_.log_focal = std::log(camera_.fx);
     focal_.information = focal_memory * focal_.information + focal_trust * std::max(0.0, own);
   }
   last_X_CB_ = attempt.fit.X_CM;
+  last_support_ = attempt.check.support;
   motion_.add(attempt.fit.X_CM, time_ns);
   learn(attempt);
   tracking_ = true;
@@ -201,6 +230,50 @@ void BoardTracker::accept(const Attempt& attempt, std::int64_t time_ns) {
   frames_unseen_ = 0;
   start_X_CB_.reset();
   start_corners_.reset();
+}
+
+// Hands come over a board within a few frames, but seldom within one: a pose that explains much less of the picture
+// than the last one did may lie a few squares off.
+bool BoardTracker::doubtful(const Attempt& attempt) const {
+  return attempt.check.support < 0.7 * last_support_;
+}
+
+// From where the board should be by now; the pose that explains the picture best, if none is beyond doubt.
+BoardTracker::Attempt BoardTracker::follow(const Pyramid& pyramid, std::int64_t time_ns) const {
+  const Isometry3d predicted = motion_.predict(time_ns);
+  const Isometry3d bent = motion_.predict(time_ns, Predictor::second);
+  const std::pair<const Isometry3d*, const std::vector<FitRound>*> starts[] = {{&predicted, &usual_rounds},
+                                                                               {&bent, &usual_rounds},
+                                                                               {&predicted, &wide_rounds},
+                                                                               {&bent, &wide_rounds},
+                                                                               {&*last_X_CB_, &wide_rounds}};
+  std::optional<Attempt> best;
+  for (const auto& [start, rounds] : starts) {
+    Attempt tried = attempt(pyramid, *start, *rounds);
+    const auto rank = [](const Attempt& a) { return std::pair(a.good, a.check.support); };
+    if (!best || rank(tried) > rank(*best)) best = std::move(tried);
+    if (best->good && !doubtful(*best)) break;
+  }
+  return *std::move(best);
+}
+
+// A lamp that goes on or off, or a camera that adapts, changes all edges alike. Returns whether anything changed.
+bool BoardTracker::follow_light(const PoseFit& fit) {
+  std::vector<float> ratios;
+  for (std::size_t i = 0; i < fit.hits.size(); ++i) {
+    const EdgeSample& known = samples_[fit.samples[i]];
+    if (known.grey > 0 && fit.hits[i].grey > 0) ratios.push_back(fit.hits[i].grey / known.grey);
+  }
+  if (ratios.size() < least_points) return false;
+  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  if (std::abs(std::log(*middle)) < 0.05F) return false;
+  for (EdgeSample& sample : samples_) {
+    sample.grey *= *middle;
+    sample.contrast *= *middle;
+  }
+  contrast_ *= *middle;
+  return true;
 }
 
 TrackedBoard BoardTracker::track(const cv::Mat& picture_bgr, const Pyramid& pyramid, std::int64_t time_ns) {
@@ -211,21 +284,26 @@ TrackedBoard BoardTracker::track(const cv::Mat& picture_bgr, const Pyramid& pyra
   const bool was_tracking = tracking_;
   std::optional<Attempt> found;
   if (tracking_ && !start_X_CB_) {
-    const Isometry3d predicted = motion_.predict(time_ns);
-    Attempt tried = attempt(pyramid, predicted, usual_rounds);
-    if (!tried.good) tried = attempt(pyramid, predicted, wide_rounds);
-    if (!tried.good) tried = attempt(pyramid, *last_X_CB_, wide_rounds);
+    predict_zoom();
+    Attempt tried = follow(pyramid, time_ns);
+    if (!tried.good && follow_light(tried.fit)) tried = follow(pyramid, time_ns);
     result.fit = tried.fit;
     result.check = tried.check;
     if (tried.good) found = std::move(tried);
   }
   bool relocated = false;
-  if (!found) {
-    found = find(picture_bgr, pyramid);
-    relocated = found.has_value();
+  if (!found || doubtful(*found)) {
+    auto anew = find(picture_bgr, pyramid);
+    if (anew && (!found || anew->check.support > found->check.support + 0.1)) {
+      found = std::move(anew);
+      relocated = true;
+    }
   }
   if (found) {
-    if (relocated) motion_.forget();
+    if (relocated) {
+      motion_.forget();
+      zoom_rate_ = 0;
+    }
     accept(*found, time_ns);
     result.status = relocated && !was_tracking ? TrackStatus::relocalised : TrackStatus::ok;
     result.X_CB = found->fit.X_CM;
@@ -235,6 +313,7 @@ TrackedBoard BoardTracker::track(const cv::Mat& picture_bgr, const Pyramid& pyra
     return result;
   }
   ++frames_unseen_;
+  zoom_rate_ = 0;
   result.camera = camera_;
   if (tracking_ && frames_unseen_ <= most_coasting) {
     result.status = TrackStatus::coasting;
@@ -243,6 +322,7 @@ TrackedBoard BoardTracker::track(const cv::Mat& picture_bgr, const Pyramid& pyra
   }
   tracking_ = false;
   motion_.forget();
+  forget_looks();
   result.status = TrackStatus::lost;
   return result;
 }

@@ -62,6 +62,11 @@ class BoardTracker {
     bool good = false;
   };
   Attempt attempt(const Pyramid& pyramid, const Eigen::Isometry3d& start, const std::vector<FitRound>& rounds) const;
+  bool doubtful(const Attempt& attempt) const;
+  Attempt follow(const Pyramid& pyramid, std::int64_t time_ns) const;
+  void forget_looks();
+  void predict_zoom();
+  bool follow_light(const PoseFit& fit);
   std::optional<Attempt> find(const cv::Mat& picture_bgr, const Pyramid& pyramid);
   std::optional<Attempt> from_located(const LocatedBoard& located, const Pyramid& pyramid);
   void accept(const Attempt& attempt, std::int64_t time_ns);
@@ -73,7 +78,9 @@ class BoardTracker {
   Motion motion_;
   Intrinsics camera_;
   FocalPrior focal_;
-  double contrast_ = 0;  // grey levels between light and dark squares
+  double zoom_rate_ = 0;     // change of the log focal length a picture
+  double contrast_ = 0;      // grey levels between light and dark squares
+  double last_support_ = 0;  // of the last pose that was believed
   std::optional<Eigen::Isometry3d> last_X_CB_;
   std::optional<Eigen::Isometry3d> start_X_CB_;
   std::optional<std::array<Eigen::Vector2d, 4>> start_corners_;

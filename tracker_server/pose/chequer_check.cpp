@@ -107,7 +107,8 @@ ChequerCheck check_chequer(const cv::Mat1b& grey, const BoardGeometry& board, co
   check.contrast = inside[inside.size() / 2];
   const double typical = std::max(3.0, typical_contrast > 0 ? typical_contrast : check.contrast);
 
-  Mean support;
+  constexpr double clearly = 0.5;
+  Mean support, contradicted;
   std::array<Mean, 4> rim, beyond;
   const auto add = [](Mean& mean, double value) {
     mean.sum += value;
@@ -121,12 +122,15 @@ ChequerCheck check_chequer(const cv::Mat1b& grey, const BoardGeometry& board, co
       add(beyond[first], value);
     else if (place == n)
       add(beyond[first + 1], value);
-    else
+    else {
       add(support, value);
+      add(contradicted, value < -clearly ? 1 : 0);
+    }
     if (place == 0) add(rim[first], value);
     if (place == n - 1) add(rim[first + 1], value);
   }
   check.support = support.value();
+  check.contradicted = contradicted.value();
   for (std::size_t side = 0; side < 4; ++side) {
     check.rim[side] = rim[side].value();
     check.beyond[side] = beyond[side].count < n / 2 ? 0 : beyond[side].value();

@@ -15,6 +15,8 @@ struct ChequerCheck {
   double support = 0;   // -1..1: mean step between neighbouring squares, signed by colour, in typical steps
   double contrast = 0;  // grey levels: the median step
   int looked_at = 0;    // pairs of squares inside the picture
+  // 0..1: share of the pairs whose darker square is clearly the one that should be lighter. What covers a board shows few.
+  double contradicted = 0;
   // Along the outermost squares (top row, bottom row, left, right), and along where more squares would follow.
   std::array<double, 4> rim{};
   std::array<double, 4> beyond{};

@@ -16,9 +16,11 @@ using Eigen::Vector3d;
 using Matrix7 = Eigen::Matrix<double, 7, 7>;
 using Vector7 = Eigen::Matrix<double, 7, 1>;
 
-constexpr float least_contrast = 8;     // grey levels, of a step that counts as an edge
-constexpr float weakest_share = 0.35F;  // of the contrast an edge showed before; less is something else
-constexpr double nearest_m = 1e-3;      // in front of the camera
+constexpr float least_contrast = 8;  // grey levels, of a step that counts as an edge
+// Of the contrast an edge showed before; less or more is something else, and so is one much brighter or darker.
+constexpr float weakest_share = 0.35F, strongest_share = 2;
+constexpr float largest_shift = 0.35F, always_allowed = 8;  // share of the contrast, and grey levels
+constexpr double nearest_m = 1e-3;                          // in front of the camera
 
 // Standard deviation of one edge point, pixels: noise, paper that is not flat, a lens that is not ideal.
 constexpr double edge_sigma_px = 0.35;
@@ -130,10 +132,14 @@ bool improve(const std::vector<EdgeSample>& samples, const FitRound& round, doub
 
 void judge_contrast(const std::vector<EdgeSample>& samples, PoseFit& fit) {
   for (std::size_t i = 0; i < fit.hits.size(); ++i) {
-    const float known = samples[fit.samples[i]].contrast;
+    const EdgeSample& known = samples[fit.samples[i]];
     EdgeHit& hit = fit.hits[i];
-    if (hit.verdict == EdgeVerdict::accepted && known > 0 && std::abs(hit.contrast) < weakest_share * known)
-      hit.verdict = EdgeVerdict::wrong_contrast;
+    if (hit.verdict != EdgeVerdict::accepted || !(known.contrast > 0)) continue;
+    const float strength = std::abs(hit.contrast);
+    const bool as_strong =
+        strength >= weakest_share * known.contrast && strength <= strongest_share * known.contrast + always_allowed;
+    const bool as_bright = std::abs(hit.grey - known.grey) <= largest_shift * known.contrast + always_allowed;
+    if (!as_strong || !as_bright) hit.verdict = EdgeVerdict::wrong_contrast;
   }
 }
 

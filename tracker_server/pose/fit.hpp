@@ -20,6 +20,7 @@ struct EdgeSample {
   int segment = 0;
   int polarity = 0;    // as ModelSegment's, or what was learned
   float contrast = 0;  // grey levels it showed so far; 0: not known
+  float grey = 0;      // grey level half way up that step
 };
 
 // Evenly along each segment, fewer on a model with many.

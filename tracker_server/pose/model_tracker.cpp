@@ -1,6 +1,7 @@
 #include "tracker_server/pose/model_tracker.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <nlopt.h>
@@ -12,6 +13,10 @@ using Eigen::Isometry3d;
 
 constexpr int most_frames_unseen = 2;
 
+// So many edges found within a few pixels of where they were expected are not looked for farther away, where print on a
+// face or things behind it may look more like them than they do themselves.
+constexpr double plenty = 0.6;
+
 // Clutter behind an outline and texture on a face give edges as well: a pose counts when more agrees than chance does.
 constexpr double least_edges_seen = 0.25;
 constexpr double worst_rms_px = 2.0;
@@ -20,6 +25,7 @@ constexpr std::size_t fewest_points = 20;
 // Enough points for a fit to average over, few enough for a millisecond.
 constexpr std::size_t wanted_samples = 800;
 
+const std::vector<FitRound> tight_rounds = {{0, 4, 1, 2}, {0, 3, 1, 2}};
 const std::vector<FitRound> near_rounds = {{1, 7, 2, 2}, {0, 6, 1, 2}, {0, 4, 1, 2}};
 const std::vector<FitRound> far_rounds = {{2, 8, 1, 3}, {1, 8, 1, 2}, {0, 6, 1, 2}, {0, 4, 1, 2}};
 
@@ -63,12 +69,33 @@ PoseFit ModelTracker::search(const Pyramid& pyramid, const Isometry3d& start) co
   return attempt(pyramid, near, near_rounds);
 }
 
+// How each edge looked when it was last seen well: the next picture's edge there has the same side bright. What lies
+// behind an outline and which faces meet in an edge change as the model turns, so nothing older is kept.
+void ModelTracker::remember(const PoseFit& fit) {
+  for (EdgeSample& sample : samples_) {
+    sample.polarity = 0;
+    sample.contrast = 0;
+    sample.grey = 0;
+  }
+  for (std::size_t i = 0; i < fit.hits.size(); ++i) {
+    if (fit.hits[i].verdict != EdgeVerdict::accepted) continue;
+    EdgeSample& sample = samples_[fit.samples[i]];
+    sample.polarity = fit.hits[i].contrast > 0 ? 1 : -1;
+    sample.contrast = std::abs(fit.hits[i].contrast);
+    sample.grey = fit.hits[i].grey;
+  }
+}
+
 TrackedModel ModelTracker::track(const Pyramid& pyramid, std::int64_t time_ns) {
   TrackedModel result;
   if (!last_X_CM_) return result;
   const bool was_lost = frames_unseen_ > most_frames_unseen;
   const Isometry3d predicted = frames_unseen_ == 0 ? motion_.predict(time_ns) : *last_X_CM_;
-  result.fit = attempt(pyramid, predicted, near_rounds);
+  result.fit = attempt(pyramid, predicted, tight_rounds);
+  if (!good(result.fit) || result.fit.share() < plenty) {
+    PoseFit farther = attempt(pyramid, predicted, near_rounds);
+    if (!good(result.fit) || farther.share() > result.fit.share()) result.fit = std::move(farther);
+  }
   if (!good(result.fit)) result.fit = attempt(pyramid, predicted, far_rounds);
   if (!good(result.fit)) result.fit = attempt(pyramid, *last_X_CM_, far_rounds);
   if (!good(result.fit)) result.fit = search(pyramid, *last_X_CM_);
@@ -79,6 +106,7 @@ TrackedModel ModelTracker::track(const Pyramid& pyramid, std::int64_t time_ns) {
     result.X_CM = result.fit.X_CM;
     last_X_CM_ = result.X_CM;
     motion_.add(result.X_CM, time_ns);
+    remember(result.fit);
     frames_unseen_ = 0;
     return result;
   }

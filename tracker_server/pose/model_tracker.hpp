@@ -30,6 +30,7 @@ class ModelTracker {
  private:
   PoseFit attempt(const Pyramid& pyramid, const Eigen::Isometry3d& start, const std::vector<FitRound>& rounds) const;
   PoseFit search(const Pyramid& pyramid, const Eigen::Isometry3d& start) const;
+  void remember(const PoseFit& fit);
 
   Model model_;
   std::vector<EdgeSample> samples_;

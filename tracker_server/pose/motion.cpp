@@ -32,10 +32,10 @@ void Motion::add(const Isometry3d& X, std::int64_t time_ns) {
   if (past_.size() > 3) past_.pop_front();
 }
 
-Isometry3d Motion::predict(std::int64_t time_ns) const {
+Isometry3d Motion::predict(std::int64_t time_ns, Predictor predictor) const {
   if (past_.empty()) return Isometry3d::Identity();
   const Moment& last = past_.back();
-  if (predictor_ == Predictor::none || past_.size() < 2 || time_ns <= last.time_ns) return last.X;
+  if (predictor == Predictor::none || past_.size() < 2 || time_ns <= last.time_ns) return last.X;
   const auto velocity = [&](const Moment& a, const Moment& b) {
     const double dt = seconds(b.time_ns - a.time_ns);
     const Eigen::AngleAxisd turn(b.X.linear() * a.X.linear().transpose());
@@ -45,7 +45,7 @@ Isometry3d Motion::predict(std::int64_t time_ns) const {
   const std::int64_t step_ns = last.time_ns - past_[past_.size() - 2].time_ns;
   const double dt = seconds(std::min(time_ns - last.time_ns, 3 * step_ns));
   Velocity v = velocity(past_[past_.size() - 2], last);
-  if (predictor_ == Predictor::second && past_.size() == 3) {
+  if (predictor == Predictor::second && past_.size() == 3) {
     const Velocity before = velocity(past_[0], past_[1]);
     const double between = seconds(last.time_ns - past_[0].time_ns) / 2;
     // The mean velocity of the coming step lies half a step ahead of the last one's.

@@ -23,7 +23,8 @@ class Motion {
   void forget() { past_.clear(); }
 
   // The last pose if too little is known. Times may be uneven, and further ahead than one frame.
-  Eigen::Isometry3d predict(std::int64_t time_ns) const;
+  Eigen::Isometry3d predict(std::int64_t time_ns) const { return predict(time_ns, predictor_); }
+  Eigen::Isometry3d predict(std::int64_t time_ns, Predictor predictor) const;
 
  private:
   struct Moment {

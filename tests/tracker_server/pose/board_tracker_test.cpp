@@ -119,6 +119,75 @@ TEST(BoardTracker, IsNeverOneSquareOffAfterAJump) {
   }
 }
 
+// The picture's middle runs in a circle at about 40 pixels a picture: what goes straight on misses by more than the
+// search reaches, and the next lines of the grid are nearer than the right ones.
+TEST(BoardTracker, FollowsAFastSweepWithoutSettlingOnTheNextLines) {
+  BoardScene scene = plain_scene();
+  scene.pieces = test::start_position(scene.board);
+  BoardTracker tracker(options_for(scene));
+  const Eigen::Isometry3d middle = scene.X_CB;
+  double turn = 0;
+  for (int frame = 0; frame < 24; ++frame) {
+    const double swing = 0.13;  // radians; of 900 px: a circle of 117 px
+    turn += 0.34 * std::min(1.0, frame / 8.0);
+    const Eigen::Vector3d axis(std::cos(turn), std::sin(turn), 0);
+    scene.X_CB = Eigen::AngleAxisd(swing, axis) * middle;
+    scene.seed = static_cast<unsigned>(frame);
+    const TrackedBoard seen = see(tracker, test::paint(scene, 2), frame);
+    ASSERT_TRUE(has_pose(seen)) << frame;
+    EXPECT_LT(error_either_way_px(scene, seen), 1.0) << frame;
+  }
+}
+
+// Print has edges of its own, as strong as the board's.
+TEST(BoardTracker, PrintOverTheBoardDoesNotPullThePose) {
+  BoardScene scene = plain_scene();
+  scene.pieces = test::start_position(scene.board);
+  BoardTracker tracker(options_for(scene));
+  for (int frame = 0; frame < 16; ++frame) {
+    const int edge = 40 * std::max(0, frame - 4);
+    scene.before = [edge](int x, int y) -> std::optional<cv::Vec3b> {
+      if (x > std::min(edge, 340)) return std::nullopt;
+      return (y / 4) % 3 == 0 && (x / 90) % 4 != 3 ? cv::Vec3b(60, 60, 60) : cv::Vec3b(215, 225, 230);
+    };
+    scene.seed = static_cast<unsigned>(frame);
+    const TrackedBoard seen = see(tracker, test::paint(scene, 2), frame);
+    ASSERT_TRUE(has_pose(seen)) << frame;
+    EXPECT_LT(error_either_way_px(scene, seen), 1.5) << frame << ": the pixels farthest off are under the paper";
+  }
+}
+
+TEST(BoardTracker, ALampThatGoesOutIsNoReasonToLetGo) {
+  BoardScene scene = plain_scene();
+  scene.pieces = test::start_position(scene.board);
+  BoardTracker tracker(options_for(scene));
+  for (int frame = 0; frame < 8; ++frame) {
+    cv::Mat picture = test::paint(scene, 2);
+    if (frame >= 3 && frame < 6) picture.convertTo(picture, -1, 0.45);
+    const TrackedBoard seen = see(tracker, picture, frame);
+    EXPECT_TRUE(has_pose(seen)) << frame;
+    EXPECT_LT(error_either_way_px(scene, seen), 2 * exact_px) << frame;
+  }
+}
+
+// A zoom of 1 % a picture is told from an approach, and not run after.
+TEST(BoardTracker, FollowsAZoomAsAZoom) {
+  BoardScene scene = plain_scene();
+  scene.pieces = test::start_position(scene.board);
+  BoardTrackerOptions options = options_for(scene);
+  options.focal = FocalMode::estimate;
+  BoardTracker tracker(options);
+  for (int frame = 0; frame < 32; ++frame) {
+    scene.camera = test::camera_720x576(900 * std::exp(frame < 6 ? 0.0 : -0.01 * (frame - 6)));
+    scene.seed = static_cast<unsigned>(frame);
+    const TrackedBoard seen = see(tracker, test::paint(scene, 2), frame);
+    ASSERT_TRUE(has_pose(seen)) << frame;
+    // The rate is not known at once; after twenty pictures it is.
+    const double allowed = frame < 6 ? 0.01 : frame < 26 ? 0.04 : 0.01;
+    EXPECT_NEAR(seen.camera.fx / scene.camera.fx, 1, allowed) << frame;
+  }
+}
+
 TEST(BoardTracker, EstimatesAnUnknownFocalLength) {
   BoardScene scene = plain_scene();
   BoardTrackerOptions options = options_for(scene);
