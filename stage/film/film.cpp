@@ -36,6 +36,7 @@ Shot Film::next() {
   Truth& truth = shot.truth;
   truth.stamp = {next_frame_, std::llround(t_s * 1e9)};
   truth.view = view_;
+  truth.board = scenario_.board;
   truth.occupancy = occupancy_of(world_);
   const Hidden hidden = hidden_shares(world_, view_);
   truth.hand_share = hidden.surface_by_arm;

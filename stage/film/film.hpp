@@ -18,6 +18,7 @@ struct Truth {
   double hand_share = 0;  // of the playing surface, hidden by the player's arm
   double edges_hidden = 0;  // share of the outline's and the grid's length in the picture hidden by arm or pieces, or outside it
   double motion_px = 0;   // how far the board's corners moved since the frame before, the mean of four
+  BoardGeometry board;
 };
 
 struct Shot {

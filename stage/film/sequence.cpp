@@ -33,8 +33,10 @@ std::string truth_line(const Truth& truth) {
   const Pose pose = to_pose(truth.view.X_CB);
   const nlohmann::ordered_json line{{"frame", truth.stamp.frame_id},
                                     {"capture_ns", truth.stamp.capture_ns},
-                                    {"p_CB", pose.p},
-                                    {"q_CB", pose.q},
+                                    {"X_CB", {{"p", pose.p}, {"q", pose.q}}},
+                                    {"board",
+                                     {{"squares", truth.board.squares},
+                                      {"square_size_m", truth.board.square_size_m}}},
                                     {"intrinsics", to_json(truth.view.intrinsics)},
                                     {"occupancy", truth.occupancy},
                                     {"hand_share", truth.hand_share},
