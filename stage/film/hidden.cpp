@@ -37,6 +37,14 @@ bool behind_piece(const World& world, const Eigen::Vector3d& eye, const Eigen::V
   return false;
 }
 
+bool behind_sheet(const Sheet& sheet, const Eigen::Vector3d& eye, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d from = sheet.X_BS.inverse() * eye;
+  const Eigen::Vector3d to = sheet.X_BS.inverse() * point;
+  if (from.z() * to.z() >= 0) return false;  // both on one side
+  const Eigen::Vector3d at = from + (to - from) * (from.z() / (from.z() - to.z()));
+  return std::abs(at.x()) < sheet.size_x_m / 2 && std::abs(at.y()) < sheet.size_y_m / 2;
+}
+
 bool outside(const View& view, const Eigen::Vector3d& point) {
   if ((view.X_CB * point).z() <= kNear_m) return true;
   const Eigen::Vector2d at = project(view, point);
@@ -52,7 +60,8 @@ Hidden hidden_shares(const World& world, const View& view) {
   }
   const Eigen::Vector3d eye = camera_position_B(view);
   const auto behind_arm = [&](const Eigen::Vector3d& point) {
-    return std::any_of(arm.begin(), arm.end(),
+    return (world.sheet && behind_sheet(*world.sheet, eye, point)) ||
+           std::any_of(arm.begin(), arm.end(),
                        [&](const Capsule& c) { return blocks(c, eye.cast<float>(), point.cast<float>()); });
   };
   const int n = world.board.squares;

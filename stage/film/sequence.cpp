@@ -18,8 +18,9 @@ nlohmann::ordered_json to_json(const Intrinsics& k) {
 
 std::string csv(const Pose& pose, char separator) {
   char text[256];
-  std::snprintf(text, sizeof text, "%.9g%c%.9g%c%.9g%c%.9g%c%.9g%c%.9g%c%.9g", pose.p[0], separator, pose.p[1], separator,
-                pose.p[2], separator, pose.q[0], separator, pose.q[1], separator, pose.q[2], separator, pose.q[3]);
+  std::snprintf(text, sizeof text, "%.9g%c%.9g%c%.9g%c%.9g%c%.9g%c%.9g%c%.9g", pose.p[0], separator, pose.p[1],
+                separator, pose.p[2], separator, pose.q[0], separator, pose.q[1], separator, pose.q[2], separator,
+                pose.q[3]);
   return text;
 }
 
@@ -31,17 +32,16 @@ Error write_failure(const std::filesystem::path& path) {
 
 std::string truth_line(const Truth& truth) {
   const Pose pose = to_pose(truth.view.X_CB);
-  const nlohmann::ordered_json line{{"frame", truth.stamp.frame_id},
-                                    {"capture_ns", truth.stamp.capture_ns},
-                                    {"X_CB", {{"p", pose.p}, {"q", pose.q}}},
-                                    {"board",
-                                     {{"squares", truth.board.squares},
-                                      {"square_size_m", truth.board.square_size_m}}},
-                                    {"intrinsics", to_json(truth.view.intrinsics)},
-                                    {"occupancy", truth.occupancy},
-                                    {"hand_share", truth.hand_share},
-                                    {"edges_hidden", truth.edges_hidden},
-                                    {"motion_px", truth.motion_px}};
+  const nlohmann::ordered_json line{
+      {"frame", truth.stamp.frame_id},
+      {"capture_ns", truth.stamp.capture_ns},
+      {"X_CB", {{"p", pose.p}, {"q", pose.q}}},
+      {"board", {{"squares", truth.board.squares}, {"square_size_m", truth.board.square_size_m}}},
+      {"intrinsics", to_json(truth.view.intrinsics)},
+      {"occupancy", truth.occupancy},
+      {"hand_share", truth.hand_share},
+      {"edges_hidden", truth.edges_hidden},
+      {"motion_px", truth.motion_px}};
   return line.dump();
 }
 
@@ -50,7 +50,8 @@ Result<SequenceWriter> SequenceWriter::create(const std::filesystem::path& folde
   std::filesystem::create_directories(folder, trouble);
   if (trouble) return failure(ErrorCode::io, "Cannot make the folder " + folder.string() + ": " + trouble.message());
   if (std::filesystem::exists(folder / "frame_00000.png")) {
-    return failure(ErrorCode::refused, folder.string() + " holds a sequence already; choose another folder or remove it.");
+    return failure(ErrorCode::refused,
+                   folder.string() + " holds a sequence already; choose another folder or remove it.");
   }
   SequenceWriter writer;
   writer.folder_ = folder;
@@ -72,9 +73,10 @@ Result<void> SequenceWriter::write(const Shot& shot) {
     return tl::make_unexpected(write_failure(folder_ / name));
   }
   const Pose pose = to_pose(shot.truth.view.X_CB);
-  if (frame == 0) {
+  if (!begun_) {
+    begun_ = true;
     std::ofstream init(folder_ / "init.json");
-    const nlohmann::ordered_json first{{"frame", 0},          {"tx", pose.p[0]}, {"ty", pose.p[1]}, {"tz", pose.p[2]},
+    const nlohmann::ordered_json first{{"frame", frame},  {"tx", pose.p[0]}, {"ty", pose.p[1]}, {"tz", pose.p[2]},
                                        {"qw", pose.q[0]}, {"qx", pose.q[1]}, {"qy", pose.q[2]}, {"qz", pose.q[3]}};
     if (!(init << first.dump(2) << "\n")) return tl::make_unexpected(write_failure(folder_ / "init.json"));
   }

@@ -24,6 +24,7 @@ class SequenceWriter {
   std::filesystem::path folder_;
   std::ofstream poses_;
   std::ofstream truth_;
+  bool begun_ = false;
 };
 
 }  // namespace counterpart::stage

@@ -49,6 +49,7 @@ double Player::random(double from, double to) {
 
 void Player::step(double dt_s, World& world) {
   if (!world.player_present) return;
+  time_s_ += dt_s;
   if (gestures_.idle()) {
     waited_s_ += dt_s;
     hand_after_ = world.hand.pinch_B;
@@ -58,7 +59,22 @@ void Player::step(double dt_s, World& world) {
   gestures_.step(dt_s * options_.speed, world);
 }
 
+bool Player::rest_hand(const World& world) {
+  if (rests_made_ >= options_.rests.size() || options_.rests[rests_made_].at_s > time_s_) return false;
+  const HandRest& rest = options_.rests[rests_made_++];
+  Stroke stroke;
+  stroke.to_B = {rest.place_m.x(), rest.place_m.y(), grip_height_m(world.board) + world.board.piece_height_m};
+  stroke.duration_s = kReach_s + kFar_s_m * (stroke.to_B - hand_after_).norm();
+  stroke.arc_m = 0.05;
+  gestures_.add(stroke);
+  hand_after_ = stroke.to_B;
+  pause(world, rest.for_s * options_.speed);
+  withdraw(world);
+  return true;
+}
+
 void Player::decide(World& world) {
+  if (rest_hand(world)) return;
   if (options_.practise) return practise(world);
   if (!mirror_) return;
   const BoardState& state = *mirror_;
@@ -71,8 +87,11 @@ void Player::decide(World& world) {
       for (const int square : state.to_remove) {
         const int piece = piece_on(world, square);
         if (piece < 0) continue;
+        if (gestures_.idle() && taken_off_ > 0 && waited_s_ < options_.forgets_s) return;
         if (gestures_.idle()) pause(world, random(0.2, 0.5));
         take_off(world, piece);
+        ++taken_off_;
+        if (options_.forgets_s > 0) break;
       }
       if (!gestures_.idle()) withdraw(world);
       return;
@@ -106,11 +125,27 @@ void Player::play(const BoardState& state, World& world) {
   const PlayerMove& move = moves[std::min(chosen, moves.size() - 1)];
   const int piece = piece_on(world, move.path.front());
   if (piece < 0) return;
+  taken_off_ = 0;
   pause(world, random(0.2, 0.7));
   reach_for(world, piece);
   carry(world, piece, move.path);
   withdraw(world);
   ++moves_made_;
+}
+
+std::vector<std::pair<int, int>> Player::wrong_piece(const World& world) const {
+  const std::vector<PlayerMove> legal = legal_moves(mirror_->rules, mirror_->squares, mirror_->turn);
+  if (legal.empty() || legal.front().captured.empty()) return {};
+  const int n = world.board.squares;
+  for (std::size_t i = 0; i < world.pieces.size(); ++i) {
+    if (world.pieces[i].square == 0 || world.pieces[i].king) continue;
+    const Cell from = cell_of_square(world.pieces[i].square, n);
+    for (const int side : {-1, 1}) {
+      const auto to = square_of_cell({from.row + 1, from.col + side}, n);
+      if (to && mirror_->squares[static_cast<std::size_t>(*to - 1)] == 'e') return {{static_cast<int>(i), *to}};
+    }
+  }
+  return {};
 }
 
 bool Player::play_illegally(const World& world) {
@@ -121,8 +156,11 @@ bool Player::play_illegally(const World& world) {
   const bool two = planned.kind == IllegalKind::two_pieces;
   const int rows = planned.kind == IllegalKind::backwards ? -1 : planned.kind == IllegalKind::too_far ? 2 : two ? 1 : 0;
   const int cols = planned.kind == IllegalKind::backwards || two ? 1 : 2;
-  std::vector<std::pair<int, int>> chosen;                                                  // piece, square
-  for (std::size_t i = world.pieces.size(); i-- > 0 && chosen.size() < (two ? 2u : 1u);) {  // from the front row
+  std::vector<std::pair<int, int>> chosen;  // piece, square
+  if (planned.kind == IllegalKind::wrong_piece) chosen = wrong_piece(world);
+  const bool by_steps = planned.kind != IllegalKind::wrong_piece;
+  for (std::size_t i = world.pieces.size();
+       by_steps && i-- > 0 && chosen.size() < (two ? 2u : 1u);) {  // from the front row
     if (world.pieces[i].square == 0 || world.pieces[i].king) continue;
     const Cell from = cell_of_square(world.pieces[i].square, n);
     for (const int side : {-cols, cols}) {

@@ -1,10 +1,11 @@
 // What stands and moves in the simulated room at one moment. Frame B, metres.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "protocol/vocabulary/board_geometry.hpp"
 
@@ -22,12 +23,26 @@ struct HandState {
   int held_piece = -1;               // index into World::pieces
 };
 
+// A sheet of paper that somebody holds over the board.
+struct Sheet {
+  Eigen::Isometry3d X_BS = Eigen::Isometry3d::Identity();  // S: origin at its middle, z out of it
+  double size_x_m = 0.5, size_y_m = 0.5;
+};
+
+// Frame R is the room's: that of the board where it first lay.
 struct World {
   BoardGeometry board;
+  Eigen::Isometry3d X_RB = Eigen::Isometry3d::Identity();  // upright: the board lies on the table
+  double light = 1;                                        // 1: a bright day, 0: dark
+  std::optional<Eigen::Vector3d> cup_R;                    // a coffee cup's foot
+  std::optional<Sheet> sheet;
   std::vector<RealPiece> pieces;
   bool player_present = true;
   HandState hand;
 };
+
+// Moves the board with what stands on it; what lies beside it stays where it is in the room.
+void move_board(World& world, const Eigen::Isometry3d& X_RB);
 
 // The piece that stands on this square, or -1.
 int piece_on(const World& world, int square);

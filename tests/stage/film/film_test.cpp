@@ -87,12 +87,21 @@ Agreement grid_agreement(const Shot& shot, const BoardGeometry& board) {
   return result;
 }
 
-Shot empty_board(Scenario scenario) {
+Shot empty_board(Scenario scenario, int frame = 0) {
   // Without pieces: they would hide parts of the lines. A crowned view from nearly above makes squares large.
-  scenario.path.eye_B = {0.1, 0.35, 0.75};
-  scenario.path.target_B = {0, 0, 0};
+  scenario.path.eye_R = {0.1, 0.35, 0.75};
+  scenario.path.target_R = {0, 0, 0};
   scenario.no_pieces = true;
-  return Film::begin(scenario).value().next();
+  Film film = Film::begin(scenario).value();
+  for (int i = 0; i < frame; ++i) film.next();
+  return film.next();
+}
+
+// A later frame of a scenario that says what its camera or board does.
+Agreement agreement_in(const std::string& what, int frame) {
+  Scenario scenario = parse_scenario(R"({"player": {"present": false}, )" + what + "}").value();
+  scenario.sensor.blur_px = scenario.sensor.noise = 0;
+  return grid_agreement(empty_board(scenario, frame), scenario.board);
 }
 
 // The truth must agree with the picture: a line's mean offset over some 30 places, each good to about 0.1 px because of
@@ -112,6 +121,81 @@ TEST(Film, AndSoTheyDoThroughADistortedLens) {
   EXPECT_GE(agreement.lines, 16);
   EXPECT_LT(agreement.mean_abs_of_lines, 0.06);
   EXPECT_LT(agreement.worst_line, 0.15);
+}
+
+TEST(Film, TruthFollowsTheZoom) {
+  const std::string zoom = R"("camera": {"zoom_range": [0.7, 1.3], "zoom_period_s": 1})";
+  const Agreement agreement = agreement_in(zoom, 8);
+  EXPECT_GE(agreement.lines, 14);
+  EXPECT_LT(agreement.mean_abs_of_lines, 0.06);
+}
+
+TEST(Film, TruthFollowsTheBoard) {
+  const Agreement agreement = agreement_in(
+      R"("events": [{"kind": "nudge_board", "at_s": 0, "for_s": 0.2, "by_mm": [25, -10], "turn_deg": 12}])", 4);
+  EXPECT_GE(agreement.lines, 16);
+  EXPECT_LT(agreement.mean_abs_of_lines, 0.06);
+}
+
+// The picture runs by at 6 pixels a frame and the shutter is open for all of it: if the blur were not centred on the
+// stamp, lines would lie up to 3 pixels off.
+TEST(Film, MotionBlurIsCentredOnTheStamp) {
+  const Agreement agreement =
+      agreement_in(R"("camera": {"sweep_px_per_frame": 6, "sweep_radius_px": 400, "shutter_ms": 40})", 30);
+  EXPECT_GE(agreement.lines, 8);
+  EXPECT_LT(agreement.mean_abs_of_lines, 0.2);
+}
+
+TEST(Film, RollingShutterShearsThePictureRoundItsMiddleRow) {
+  Scenario scenario = parse_scenario(R"({"player": {"present": false}, "board": {"empty": true},
+      "camera": {"sweep_px_per_frame": 8, "rolling_ms": 36, "noise": 0}})")
+                          .value();
+  Film rolling = Film::begin(scenario).value();
+  scenario.shutter.readout_s = 0;
+  Film global = Film::begin(scenario).value();
+  Shot a, b;
+  for (int i = 0; i < 30; ++i) {
+    a = rolling.next();
+    b = global.next();
+  }
+  EXPECT_TRUE(a.truth.view.X_CB.isApprox(b.truth.view.X_CB, 1e-12));
+  const auto difference = [&](int row) {
+    return cv::norm(a.image_bgr.rowRange(row, row + 8), b.image_bgr.rowRange(row, row + 8), cv::NORM_L1);
+  };
+  EXPECT_LT(difference(284), 0.5 * difference(440));
+}
+
+TEST(Film, InterlacedFieldsAreHalfAPeriodApart) {
+  Scenario scenario =
+      parse_scenario(
+          R"({"player": {"present": false}, "camera": {"sweep_px_per_frame": 8, "sweep_radius_px": 1000, "interlaced": true,
+      "noise": 0, "blur_px": 0}})")
+          .value();
+  Film film = Film::begin(scenario).value();
+  cv::Mat picture;
+  for (int i = 0; i < 30; ++i) picture = film.next().image_bgr;
+  const cv::Mat row = picture.row(400);
+  EXPECT_LT(cv::norm(row, picture.row(402), cv::NORM_L1), 0.7 * cv::norm(row, picture.row(401), cv::NORM_L1));
+}
+
+TEST(Film, TheNewspaperHidesTheShareThatIsAskedFor) {
+  for (const double share : {0.3, 0.8}) {
+    Scenario scenario = clean_scenario();
+    scenario.events = {Event{EventKind::cover, 0, 4, 0, {0, 0}, 0, 0, share}};
+    Film film = Film::begin(scenario).value();
+    for (int i = 0; i < 40; ++i) film.next();
+    EXPECT_NEAR(film.next().truth.edges_hidden, share, 0.02);
+  }
+}
+
+TEST(Film, LightsGoOutAndComeBack) {
+  Scenario scenario = clean_scenario();
+  scenario.events = {Event{EventKind::lights, 0.2, 0.6, 0.04}};
+  Film film = Film::begin(scenario).value();
+  std::vector<double> brightness;
+  for (int i = 0; i < 25; ++i) brightness.push_back(cv::mean(film.next().image_bgr)[1]);
+  EXPECT_LT(brightness[12], 0.5 * brightness[0]);
+  EXPECT_NEAR(brightness[24], brightness[0], 0.01);
 }
 
 TEST(Film, SameSeedSameBytes) {

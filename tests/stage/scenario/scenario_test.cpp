@@ -45,21 +45,38 @@ TEST(Scenario, ImpossibleValuesAreNamedWithWhatIsAllowed) {
   expect_mentions(complaint("[]"), {"an object"});
 }
 
+TEST(Scenario, ReadsEvents) {
+  const Scenario scenario = parse_scenario(R"({"events": [{"kind": "cover", "at_s": 2, "share": 0.7},
+      {"kind": "nudge_board", "by_mm": [10, -5], "turn_deg": 90}]})")
+                                .value();
+  ASSERT_EQ(scenario.events.size(), 2u);
+  EXPECT_EQ(scenario.events[0].kind, EventKind::cover);
+  EXPECT_DOUBLE_EQ(scenario.events[0].share, 0.7);
+  EXPECT_DOUBLE_EQ(scenario.events[1].by_m.y(), -0.005);
+  EXPECT_NEAR(scenario.events[1].turn_rad, 1.5708, 1e-4);
+  expect_mentions(complaint("{\"events\": [\n{\"kind\": \"fire\"}]}"), {"line 2", "events/0/kind", "lights", "fire"});
+  expect_mentions(complaint(R"({"camera": {"shutter_ms": 30, "rolling_ms": 30}})"),
+                  {"shutter_ms", "between two frames"});
+  expect_mentions(complaint(R"({"camera": {"zoom_range": [1.2, 1.3]}})"), {"zoom_range", "with 1 between"});
+}
+
 TEST(Scenario, BrokenJsonNamesItsLine) {
   expect_mentions(complaint("{\n\"seed\": 1,\n}"), {"line 3", "not JSON"});
   EXPECT_EQ(load_scenario("/nowhere/x.json").error().code, ErrorCode::not_found);
 }
 
 TEST(Scenario, AllExamplesAreRight) {
-  int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(COUNTERPART_SOURCE_DIR "/stage/scenarios")) {
-    const Result<Scenario> scenario = load_scenario(entry.path().string());
-    ASSERT_TRUE(scenario.has_value()) << scenario.error().message;
-    EXPECT_EQ(scenario->name + ".json", entry.path().filename().string());
-    EXPECT_FALSE(scenario->about.empty());
-    ++count;
+  for (const std::string folder : {"/stage/scenarios", "/tests/bench/suite"}) {
+    int count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(COUNTERPART_SOURCE_DIR + folder)) {
+      const Result<Scenario> scenario = load_scenario(entry.path().string());
+      ASSERT_TRUE(scenario.has_value()) << scenario.error().message;
+      EXPECT_EQ(scenario->name + ".json", entry.path().filename().string());
+      EXPECT_FALSE(scenario->about.empty());
+      ++count;
+    }
+    EXPECT_GE(count, 14) << folder;
   }
-  EXPECT_GE(count, 2);
 }
 
 }  // namespace
