@@ -15,7 +15,8 @@ class StepTimes {
  public:
   void add(const std::string& step, double ms);
 
-  // {"pose": {"median": 1.2, "p95": 2.0, "max": 9.1, "count": 4000}, ...} in milliseconds, over the newest 20,000 frames.
+  // {"pose": {"median": 1.2, "p95": 2.0, "max": 9.1, "count": 4000}, ...} in milliseconds, over the newest 20,000
+  // frames.
   nlohmann::json report() const;
 
  private:

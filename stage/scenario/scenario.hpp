@@ -1,4 +1,4 @@
-// What happens on the stage, from a JSON file. docs/scenarios.md describes every key.
+// What happens on the stage, from a JSON file. stage/scenarios holds examples; an unknown key is answered with those there are.
 #pragma once
 
 #include <string>

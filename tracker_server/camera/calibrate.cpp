@@ -42,6 +42,25 @@ Result<BoardSight> sight_board(const cv::Mat& picture_bgr, int squares) {
   return sight;
 }
 
+namespace {
+
+// A board seen squarely is as large through a long lens from afar as through a short one from near: only tilted views
+// tell the focal length (Zhang 2000, section 3), whatever the fit says of its own certainty.
+constexpr double kTilt_rad = 0.17;
+constexpr int kTiltedViews = 3;
+
+int tilted_views(const std::vector<cv::Mat>& rotations) {
+  int count = 0;
+  for (const cv::Mat& rotation : rotations) {
+    cv::Mat R_CB;
+    cv::Rodrigues(rotation, R_CB);
+    if (std::acos(std::min(1.0, std::abs(R_CB.at<double>(2, 2)))) > kTilt_rad) ++count;
+  }
+  return count;
+}
+
+}  // namespace
+
 Result<Calibration> calibrate(const std::vector<BoardSight>& sights, int width, int height) {
   if (sights.size() < 3)
     return failure(ErrorCode::unavailable,
@@ -71,7 +90,8 @@ Result<Calibration> calibrate(const std::vector<BoardSight>& sights, int width, 
   }
   Calibration result;
   result.rms_px = rms;
-  result.focal_sigma_px = deviations.at<double>(0);
+  // With the aspect ratio fixed, fy is the one that is estimated; the deviation of fx is left at zero.
+  result.focal_sigma_px = deviations.at<double>(1);
   result.camera.width = width;
   result.camera.height = height;
   result.camera.fx = K(0, 0);
@@ -80,7 +100,7 @@ Result<Calibration> calibrate(const std::vector<BoardSight>& sights, int width, 
   result.camera.cy = K(1, 2);
   for (std::size_t i = 0; i < 5; ++i) result.camera.dist[i] = dist(static_cast<int>(i), 0);
   const bool sensible = std::isfinite(rms) && result.camera.fx > 0.2 * width && result.camera.fx < 20.0 * width &&
-                        result.focal_sigma_px < 0.05 * result.camera.fx;
+                        result.focal_sigma_px < 0.05 * result.camera.fx && tilted_views(rotations) >= kTiltedViews;
   if (!sensible)
     return failure(ErrorCode::unavailable,
                    "The pictures do not tell the focal length: show the board tilted, from "

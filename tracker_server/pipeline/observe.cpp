@@ -11,6 +11,7 @@
 #include "tracker_server/edges/pyramid.hpp"
 #include "tracker_server/pieces/piece_reader.hpp"
 #include "tracker_server/pose/board_tracker.hpp"
+#include "tracker_server/pose/plane_pose.hpp"
 #include "tracker_server/pose/projection.hpp"
 
 namespace counterpart {
@@ -39,6 +40,31 @@ auto timed(std::map<std::string, double>& step_ms, const char* name, const Step&
   auto result = step();
   step_ms[name] = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return result;
+}
+
+// A focal length that is being estimated moves a little with every frame. Those who draw with it are told of a new one
+// only when that shows: until then the pose is put in terms of the old.
+bool worth_telling(const Intrinsics& told, const Intrinsics& camera) {
+  constexpr double shows = 0.003;
+  Intrinsics scaled = told;
+  scaled.fx = camera.fx;
+  scaled.fy = camera.fy;
+  scaled.id = camera.id;
+  return scaled != camera || !(std::abs(camera.fx / told.fx - 1) <= shows) ||
+         !(std::abs(camera.fy / told.fy - 1) <= shows);
+}
+
+void settle_intrinsics(const BoardGeometry& board, TrackedBoard& seen, Intrinsics& told) {
+  seen.camera.id = told.id;
+  if (seen.camera == told) return;
+  if (worth_telling(told, seen.camera)) {
+    const std::uint32_t id = told.id + 1;
+    told = seen.camera;
+    told.id = id;
+  } else if (seen.status != TrackStatus::lost) {
+    seen.X_CB = pose_through_camera(seen.X_CB, seen.camera, told, board);
+  }
+  seen.camera = told;
 }
 
 PoseEstimate estimate_of(const TrackedBoard& seen, const FrameStamp& stamp, std::uint32_t intrinsics_id) {
@@ -181,15 +207,10 @@ Observation observe(const Frame& frame, ObserveContext& context) {
   Observation result;
 
   const Pyramid pyramid = timed(result.step_ms, "pyramid", [&] { return build_pyramid(frame.image_bgr, 3); });
-  const TrackedBoard seen = timed(
-      result.step_ms, "pose", [&] { return state.tracker.track(frame.image_bgr, pyramid, frame.stamp.capture_ns); });
+  TrackedBoard seen = timed(result.step_ms, "pose",
+                            [&] { return state.tracker.track(frame.image_bgr, pyramid, frame.stamp.capture_ns); });
 
-  Intrinsics camera = seen.camera;
-  camera.id = state.intrinsics.id;
-  if (camera != state.intrinsics) {
-    ++camera.id;
-    state.intrinsics = camera;
-  }
+  settle_intrinsics(board, seen, state.intrinsics);
   result.intrinsics = state.intrinsics;
   result.pose = estimate_of(seen, frame.stamp, state.intrinsics.id);
   result.debug = debug_of(seen, state.tracker.model(), frame.stamp);

@@ -115,7 +115,12 @@ BoardTracker::Attempt BoardTracker::attempt(const Pyramid& pyramid, const Isomet
                                             const std::vector<FitRound>& rounds) const {
   Attempt result;
   const auto visible = visible_samples(model_, samples_, start);
-  result.fit = fit_pose(pyramid, samples_, visible, camera_, start, rounds, focal_);
+  if (options_.optimizer.gradient_image) {
+    const Isometry3d X_CB = fit_to_gradient(pyramid, samples_, visible, camera_, start, options_.optimizer);
+    result.fit = judge_pose(pyramid, samples_, visible, camera_, X_CB);
+  } else {
+    result.fit = fit_pose(pyramid, samples_, visible, camera_, start, rounds, focal_);
+  }
   if (!result.fit.X_CM.matrix().allFinite() || result.fit.X_CM.translation().z() <= 0) return result;
   result.check = check_chequer(pyramid.levels[0], options_.board, result.fit.camera, result.fit.X_CM, contrast_);
   const bool from_above = (result.fit.X_CM.inverse().translation()).z() > 0;

@@ -57,7 +57,7 @@ Result<void> locate(const LocateArguments& arguments) {
   if (board) {
     const auto to_pixel = [&](double column, double row) { return board->to_pixel(column, row); };
     const BoardView view = view_board(picture, arguments.squares, to_pixel);
-    cells = read_appearance(look_at_cells(view), arguments.squares, std::nullopt).cells;
+    cells = read_appearance(look_at_cells(view), arguments.squares, {}).cells;
   }
   nlohmann::ordered_json json;
   json["found"] = board.has_value();

@@ -63,6 +63,21 @@ void Actor::go(std::deque<Stretch> stretches, const Place& end_place, Posture en
   end_posture_ = end_posture;
 }
 
+void Actor::appear(const Place& place, Posture posture, double now_s) {
+  stretches_.clear();
+  place_ = place;
+  posture_ = posture;
+  channels_ = {};
+  looked_ = false;
+  begin(now_s);
+  // What starts in the same step starts from hands that rest.
+  for (const std::size_t s : {left_side, right_side}) channels_[s].step(rest_source(), rest(s), now_s);
+}
+
+std::uint64_t Actor::rest_source() const {
+  return posture_ == Posture::seated && !going() ? 1 : seatedness_ > 0.35F ? 2 : 3;
+}
+
 BodyControls& Actor::begin(double now_s) {
   if (start_s_ < 0) start_s_ = now_s;
   controls_ = BodyControls{};
@@ -98,8 +113,7 @@ ArmGoal Actor::rest(std::size_t side) const {
 const SolvedBody& Actor::finish(const ActorInputs& inputs) {
   for (const std::size_t s : {left_side, right_side}) {
     const ArmDrive& drive = inputs.arms[s];
-    const std::uint64_t base = posture_ == Posture::seated && !going() ? 1 : seatedness_ > 0.35F ? 2 : 3;
-    controls_.arms[s] = channels_[s].step(drive.source != 0 ? drive.source + 16 : base,
+    controls_.arms[s] = channels_[s].step(drive.source != 0 ? drive.source + 16 : rest_source(),
                                           drive.source != 0 ? drive.goal : rest(s), inputs.now_s);
   }
   look(inputs);
@@ -142,12 +156,15 @@ void Actor::wear_face(const ActorInputs& in) {
   }
   for (const auto& [name, weight] : in.face) face_[name].step(weight, 0.3F, in.dt_s);
   for (const auto& [name, follower] : face_) controls_.morphs[name] += follower.value;
+  // A face at rest is not a grim one.
+  controls_.morphs["mouth-corner-puller"] += 0.16F;
+  for (const char* lid : {"eye-left-opened-up", "eye-right-opened-up"}) controls_.morphs[lid] += 0.12F;
   float closed = blink(in.now_s - start_s_, seed_);
   // Lids go down with the eyes.
   if (anatomy_->eyes[0] >= 0) {
     const Quaternionf& q = solved_.pose.turn[at(anatomy_->eyes[0])];
     const Vector3f forward = q * Vector3f::UnitY();
-    closed = std::max(closed, 0.55F * unit_clamp(-std::asin(std::clamp(forward.z(), -1.F, 1.F)) / radians(32)));
+    closed = std::max(closed, 0.38F * unit_clamp(-std::asin(std::clamp(forward.z(), -1.F, 1.F)) / radians(32)));
   }
   for (const char* lid : {"eye-left-closure", "eye-right-closure"}) {
     controls_.morphs[lid] = std::max(controls_.morphs[lid], closed);

@@ -46,6 +46,8 @@ class Actor {
 
   // Goes along stretches one after the other from `now_s` on.
   void go(std::deque<Stretch> stretches, const Place& end_place, Posture end_posture, double now_s);
+  // Is there at once, wherever he was.
+  void appear(const Place& place, Posture posture, double now_s);
   bool going() const { return !stretches_.empty(); }
   const char* going_phase() const { return stretches_.empty() ? "" : stretches_.front().phase(); }
 
@@ -63,6 +65,7 @@ class Actor {
   float reach_gap_m(std::size_t side, const ArmGoal& goal);
 
  private:
+  std::uint64_t rest_source() const;  // which rest the arms are in, for their channels
   void look(const ActorInputs& inputs);
   void wear_face(const ActorInputs& inputs);
 

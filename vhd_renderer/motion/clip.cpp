@@ -51,6 +51,16 @@ T value_at(const Keys<T>& keys, float t) {
   return mix(*s.a, *s.b, s.t);
 }
 
+// In the plane x = 0. The hand frame W keeps x along the fingers and z out of the back on both sides.
+HandKey mirrored(const HandKey& key) {
+  const auto flip = [](const Vector3f& v) { return Vector3f(-v.x(), v.y(), v.z()); };
+  const Vector3f x = flip(key.rotation * Vector3f::UnitX());
+  const Vector3f z = flip(key.rotation * Vector3f::UnitZ());
+  Eigen::Matrix3f R;
+  R << x, z.cross(x), z;
+  return {flip(key.place), Quaternionf(R)};
+}
+
 tl::unexpected<Error> wrong(const std::string& what) {
   return failure(ErrorCode::bad_format, "clip: " + what);
 }
@@ -146,6 +156,7 @@ Result<Clip> parse_clip(std::string_view json_text) {
     clip.name = from.at("name").get<std::string>();
     clip.seconds = from.at("seconds").get<float>();
     if (!(clip.seconds > 0.05F && clip.seconds < 600)) return wrong("\"seconds\" has to be from 0.05 to 600");
+    clip.yields = from.value("yields", false);
     clip.in_head_frame = from.value("frame", "chest") == "head";
     for (const auto& [name, track] : from.at("tracks").items()) read_track(name, track, clip);
     if (clip.parts() == 0) return wrong("\"" + clip.name + "\" moves nothing");
@@ -157,11 +168,18 @@ Result<Clip> parse_clip(std::string_view json_text) {
   }
 }
 
-void add_clip(const Clip& clip, float t, float weight, unsigned mask, BodyControls& c) {
-  if (!clip.head.empty() && (mask & part::head) != 0) c.head = c.head + value_at(clip.head, t) * weight;
+void add_clip(const Clip& clip, float t, float weight, unsigned mask, BodyControls& c, const ClipVariation& variation) {
+  const auto turned = [&](const Turn& turn) {
+    const Turn shown = turn * weight;
+    return variation.mirrored ? Turn{shown.pitch, -shown.roll, -shown.yaw} : shown;
+  };
+  if (!clip.head.empty() && (mask & part::head) != 0) {
+    const float height = minimum_jerk(4 * t / clip.seconds) * minimum_jerk(4 - 4 * t / clip.seconds);
+    c.head = c.head + turned(value_at(clip.head, t)) + variation.head * (weight * height);
+  }
   if ((mask & part::trunk) != 0) {
-    if (!clip.spine.empty()) c.spine = c.spine + value_at(clip.spine, t) * weight;
-    if (!clip.pelvis.empty()) c.pelvis = c.pelvis + value_at(clip.pelvis, t) * weight;
+    if (!clip.spine.empty()) c.spine = c.spine + turned(value_at(clip.spine, t));
+    if (!clip.pelvis.empty()) c.pelvis = c.pelvis + turned(value_at(clip.pelvis, t));
     if (!clip.shrug.empty()) {
       const auto shrug = value_at(clip.shrug, t);
       for (const std::size_t s : {left_side, right_side}) c.shrug[s] += shrug[s] * weight;
@@ -172,10 +190,13 @@ void add_clip(const Clip& clip, float t, float weight, unsigned mask, BodyContro
   }
 }
 
-bool clip_hand(const Clip& clip, float t, std::size_t side, const ClipFrame& frame, ArmGoal& goal) {
-  if (clip.hand[side].empty()) return false;
-  const HandKey key = value_at(clip.hand[side], t);
-  goal.wrist_S = frame.origin_S + frame.R_S * (key.place * frame.arm_m);
+bool clip_hand(const Clip& clip, float t, std::size_t shown_side, const ClipFrame& frame, ArmGoal& goal,
+               const ClipVariation& variation) {
+  const std::size_t side = variation.mirrored ? 1 - shown_side : shown_side;
+  if (clip.hand[side].empty() || !variation.hands) return false;
+  HandKey key = value_at(clip.hand[side], t);
+  if (variation.mirrored) key = mirrored(key);
+  goal.wrist_S = frame.origin_S + frame.R_S * (key.place * frame.arm_m + variation.place);
   goal.R_SW = (frame.R_S * key.rotation).normalized();
   goal.help = 0;
   goal.swivel_rad = clip.swivel[side].empty() ? 0 : value_at(clip.swivel[side], t);

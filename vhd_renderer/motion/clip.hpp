@@ -8,6 +8,7 @@
 //   left_hand, right_hand x, y, z (right, forward, up; in arm lengths), then where fingers and palm point (3 + 3)
 //   left_shape, right_shape    name of a hand shape
 //   left_swivel, right_swivel  degrees by which the elbow is lifted
+// "yields": true: it ends when the hands or the legs are told to do something.
 // "frame": "chest" (between the shoulders; the default) or "head" (between the eyes), for the hands.
 #pragma once
 
@@ -41,6 +42,7 @@ struct Clip {
   std::array<Keys<std::string>, 2> shape;
   std::array<Keys<float>, 2> swivel;
   bool in_head_frame = false;
+  bool yields = false;  // done only while there is nothing to do: it ends when the hands or legs are needed
 
   unsigned parts() const;  // of the body that it moves (see part::)
 };
@@ -57,10 +59,20 @@ struct ClipFrame {
   float arm_m = 0.5F;
 };
 
+// Somebody who does a thing twice does not do it the same way twice.
+struct ClipVariation {
+  bool mirrored = false;
+  bool hands = true;               // false: without the hands
+  Turn head;                       // added while the clip is at its height
+  Eigen::Vector3f place{0, 0, 0};  // added to the hands' places, metres in the clip's frame
+};
+
 // What a clip adds at a time; `mask` leaves out parts that it must not touch.
-void add_clip(const Clip& clip, float t_s, float weight, unsigned mask, BodyControls& controls);
+void add_clip(const Clip& clip, float t_s, float weight, unsigned mask, BodyControls& controls,
+              const ClipVariation& variation = {});
 
 // The goal it has for a hand then; false if it has none.
-bool clip_hand(const Clip& clip, float t_s, std::size_t side, const ClipFrame& frame, ArmGoal& goal);
+bool clip_hand(const Clip& clip, float t_s, std::size_t side, const ClipFrame& frame, ArmGoal& goal,
+               const ClipVariation& variation = {});
 
 }  // namespace counterpart

@@ -6,7 +6,7 @@ namespace counterpart {
 namespace {
 
 // Written by hand. Hands: place in arm lengths from between the shoulders, then fingers, then palm.
-constexpr std::array<const char*, 16> sources{
+constexpr std::array<const char*, 17> sources{
     R"({"name": "nod", "seconds": 1.3, "tracks": {
       "head": [[0, 0,0,0], [0.28, 15,0,0], [0.55, -3,0,1], [0.82, 9,0,1], [1.3, 0,0,0]]}})",
     R"({"name": "head_shake", "seconds": 1.7, "tracks": {
@@ -23,7 +23,7 @@ constexpr std::array<const char*, 16> sources{
       "left_hand": [[0, -0.62,0.52,-0.62, -0.75,0.62,0.1, 0.1,0.2,1], [1.9, -0.60,0.52,-0.64, -0.75,0.62,0.1, 0.1,0.2,1]],
       "right_hand": [[0, 0.62,0.52,-0.62, 0.75,0.62,0.1, -0.1,0.2,1], [1.9, 0.60,0.52,-0.64, 0.75,0.62,0.1, -0.1,0.2,1]],
       "left_shape": [[0, "open"]], "right_shape": [[0, "open"]]}})",
-    R"({"name": "think", "seconds": 4.2, "frame": "head", "tracks": {
+    R"({"name": "think", "seconds": 4.2, "frame": "head", "yields": true, "tracks": {
       "head": [[0, 0,0,0], [0.7, 5,-5,3], [3.4, 6,-6,2], [4.2, 0,0,0]],
       "spine": [[0, 0,0,0], [0.7, 6,0,0], [3.4, 6,0,0], [4.2, 0,0,0]],
       "face.eyebrows-left-down": [[0, 0], [0.8, 0.5], [3.4, 0.5], [4.2, 0]],
@@ -31,7 +31,7 @@ constexpr std::array<const char*, 16> sources{
       "face.mouth-compression": [[0, 0], [1.4, 0.4], [3.0, 0.2], [4.2, 0]],
       "right_hand": [[0, 0.15,0.17,-0.42, -0.35,0.0,0.94, -0.85,-0.45,-0.2], [4.2, 0.15,0.17,-0.42, -0.35,0.0,0.94, -0.85,-0.45,-0.2]],
       "right_shape": [[0, "chin"]]}})",
-    R"({"name": "tap_fingers", "seconds": 2.4, "tracks": {
+    R"({"name": "tap_fingers", "seconds": 2.4, "yields": true, "tracks": {
       "right_hand": [[0, 0.42,0.66,-0.62, -0.35,0.93,-0.2, 0,-0.2,-1], [2.4, 0.42,0.66,-0.62, -0.35,0.93,-0.2, 0,-0.2,-1]],
       "right_shape": [[0, "relaxed"], [0.3, "tap_a"], [0.55, "tap_b"], [0.8, "tap_a"], [1.05, "tap_b"], [1.3, "tap_a"],
                       [1.55, "tap_b"], [1.8, "tap_a"], [2.1, "relaxed"]]}})",
@@ -79,6 +79,11 @@ constexpr std::array<const char*, 16> sources{
       "left_hand": [[0, -0.60,0.42,0.30, 0.1,-0.1,1, 0.3,0.95,0], [0.7, -0.62,0.38,0.42, 0.1,-0.1,1, 0.3,0.95,0], [2.2, -0.60,0.42,0.28, 0.1,-0.1,1, 0.3,0.95,0]],
       "right_hand": [[0, 0.60,0.42,0.30, -0.1,-0.1,1, -0.3,0.95,0], [0.7, 0.62,0.38,0.42, -0.1,-0.1,1, -0.3,0.95,0], [2.2, 0.60,0.42,0.28, -0.1,-0.1,1, -0.3,0.95,0]],
       "left_shape": [[0, "fist"]], "right_shape": [[0, "fist"]]}})",
+    R"({"name": "bow", "seconds": 2.4, "tracks": {
+      "pelvis": [[0, 0,0,0], [0.8, 8,0,0], [1.3, 8,0,0], [2.4, 0,0,0]],
+      "spine": [[0, 0,0,0], [0.8, 13,0,0], [1.3, 13,0,0], [2.4, 0,0,0]],
+      "head": [[0, 0,0,0], [0.9, 16,0,0], [1.35, 16,0,0], [2.4, 0,0,0]],
+      "face.mouth-corner-puller": [[0, 0], [0.7, 0.35], [1.8, 0.35], [2.4, 0]]}})",
     R"({"name": "lean_in", "seconds": 3.0, "tracks": {
       "pelvis": [[0, 0,0,0], [0.9, 9,0,0], [2.1, 9,0,0], [3.0, 0,0,0]],
       "spine": [[0, 0,0,0], [0.9, 12,0,0], [2.1, 12,0,0], [3.0, 0,0,0]],

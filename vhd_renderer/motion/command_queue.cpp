@@ -1,8 +1,9 @@
 #include "vhd_renderer/motion/command_queue.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
+
+#include "protocol/codec/names.hpp"
 
 namespace counterpart {
 namespace {
@@ -17,11 +18,6 @@ bool collide(const Needs& a, const Needs& b) {
 
 }  // namespace
 
-const char* verb_of(const Action& action) {
-  static constexpr std::array<const char*, 7> verbs{"grasp", "keyframe", "navigate", "gaze", "say", "express", "stop"};
-  return verbs[action.index()];
-}
-
 const Feedback* CommandQueue::said_before(std::uint64_t id) const {
   const auto found = last_.find(id);
   return found == last_.end() ? nullptr : &found->second;
@@ -29,11 +25,11 @@ const Feedback* CommandQueue::said_before(std::uint64_t id) const {
 
 void CommandQueue::accept(const Command& command, const Needs& needs, std::int64_t now_ns) {
   entries_.push_back({command, needs, now_ns, -1, false});
-  say({command.id, FeedbackState::accepted, verb_of(command.action), "", "", -1, now_ns});
+  say({command.id, FeedbackState::accepted, std::string(verb_of(command.action)), "", "", -1, now_ns});
 }
 
 void CommandQueue::refuse(const Command& command, const std::string& code, double gap_mm, std::int64_t now_ns) {
-  say({command.id, FeedbackState::failed, verb_of(command.action), "", code, gap_mm, now_ns});
+  say({command.id, FeedbackState::failed, std::string(verb_of(command.action)), "", code, gap_mm, now_ns});
 }
 
 void CommandQueue::start_ready(std::int64_t now_ns, unsigned held, const Start& start) {
@@ -63,7 +59,7 @@ void CommandQueue::start_ready(std::int64_t now_ns, unsigned held, const Start& 
       continue;
     }
     entry->running = true;
-    say({id, FeedbackState::started, verb_of(entry->command.action), "", "", -1, now_ns});
+    say({id, FeedbackState::started, std::string(verb_of(entry->command.action)), "", "", -1, now_ns});
     start(*entry, ~taken.own);
     if (Entry* still = find(id); still != nullptr) {
       taken.own |= still->needs.own;
@@ -86,14 +82,14 @@ void CommandQueue::check_deadlines(std::int64_t now_ns, const OnEnd& on_end) {
 void CommandQueue::progress(std::uint64_t id, const std::string& phase, double gap_mm, std::int64_t now_ns) {
   const Entry* entry = find(id);
   if (entry == nullptr) return;
-  say({id, FeedbackState::progress, verb_of(entry->command.action), phase, "", gap_mm, now_ns});
+  say({id, FeedbackState::progress, std::string(verb_of(entry->command.action)), phase, "", gap_mm, now_ns});
 }
 
 void CommandQueue::end(std::uint64_t id, FeedbackState state, const std::string& code, double gap_mm,
                        std::int64_t now_ns) {
   const auto at = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.command.id == id; });
   if (at == entries_.end()) return;
-  say({id, state, verb_of(at->command.action), "", code, gap_mm, now_ns});
+  say({id, state, std::string(verb_of(at->command.action)), "", code, gap_mm, now_ns});
   entries_.erase(at);
 }
 

@@ -26,8 +26,6 @@ struct Needs {
   bool either_arm = false;  // own holds both arms; the one that is free will do
 };
 
-const char* verb_of(const Action& action);
-
 class CommandQueue {
  public:
   struct Entry {

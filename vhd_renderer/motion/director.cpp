@@ -64,25 +64,30 @@ void Director::State::set_scene(const Scene& next) {
   }
 }
 
-void Director::State::carry_piece(RunningGrasp& grasp, std::size_t side) {
-  PieceOnStage* piece = find_piece(grasp.piece);
-  if (piece == nullptr) return;
-  const GraspMoment moment = grasp.motion.at(now_s - grasp.start_s);
-  const int wrist = anatomy.arms[side].hand.wrist;
+// The hand frame W in S as it was solved.
+Isometry3f Director::State::hand_S(std::size_t side) const {
+  const HandParts& hand = anatomy.arms[side].hand;
   const BodyPose& pose = actor->solved().pose;
   Isometry3f X_SW = Isometry3f::Identity();
-  X_SW.linear() = pose.G[at(wrist)].toRotationMatrix() * anatomy.arms[side].hand.R_HW;
-  X_SW.translation() = pose.p_S[at(wrist)];
-  const Isometry3f X_SP = X_SW * grips[side].X_WP;
-  const Vector3f hand_S = X_SP.translation();
+  X_SW.linear() = pose.G[at(hand.wrist)].toRotationMatrix() * hand.R_HW;
+  X_SW.translation() = pose.p_S[at(hand.wrist)];
+  return X_SW;
+}
+
+void Director::State::carry_piece(RunningGrasp& grasp, std::size_t side) {
+  const GraspMoment moment = grasp.motion.at(now_s - grasp.start_s);
+  const Isometry3f X_SP = hand_S(side) * grasp.motion.X_WP();
+  const Vector3f foot_S = X_SP.translation();
   if (moment.phase == GraspPhase::close || moment.phase == GraspPhase::release) {
-    grasp.gap_mm = 1000.0 * static_cast<double>((hand_S - moment.target_S).norm());
+    grasp.gap_mm = 1000.0 * static_cast<double>((foot_S - moment.target_S).norm());
   }
+  PieceOnStage* piece = find_piece(grasp.piece);
+  if (piece == nullptr) return;
   const float heading = std::atan2(X_SP.linear()(1, 0), X_SP.linear()(0, 0));
   if (moment.holds && !grasp.settled) {
     if (!grasp.holds) grasp.turn_offset_rad = piece->turn_rad - heading;
     grasp.holds = true;
-    piece->foot_S = hand_S;
+    piece->foot_S = foot_S;
     piece->turn_rad = heading + grasp.turn_offset_rad;
   } else if (grasp.holds) {
     // Let go: it lies where it was brought to.
@@ -125,7 +130,7 @@ void Director::State::measure_grasps() {
     if (phase == grasp->reported || grasp->id == 0) continue;
     grasp->reported = phase;
     const bool measured = phase == GraspPhase::close || phase == GraspPhase::release;
-    queue.progress(grasp->id, name_of(phase), measured ? grasp->gap_mm : -1, now_ns);
+    queue.progress(grasp->id, phase_name(phase), measured ? grasp->gap_mm : -1, now_ns);
   }
 }
 
@@ -142,12 +147,15 @@ void Director::State::advance_clips(BodyControls& controls, ActorInputs& inputs)
       continue;
     }
     const auto weight = static_cast<float>(clip->how.weight);
-    add_clip(*clip->clip, static_cast<float>(t), weight * fading, clip->mask, controls);
+    add_clip(*clip->clip, static_cast<float>(t), weight * fading, clip->mask, controls, clip->variation);
     for (const std::size_t s : {left_side, right_side}) {
-      const unsigned bit = s == left_side ? part::left_arm : part::right_arm;
-      if ((clip->mask & bit) == 0 || clip->fade_from_s >= 0) continue;
+      // A mirrored clip moves the other arm; then the mask says which of its hands may be shown.
+      const unsigned bit = (s == left_side) != clip->variation.mirrored ? part::left_arm : part::right_arm;
+      if ((clip->mask & bit) == 0 || clip->fade_from_s >= 0 || grasps[s]) continue;
+      if (clip->clip->yields && actor->going()) continue;
       ArmGoal goal = actor->rest(s);
-      if (!clip_hand(*clip->clip, static_cast<float>(t), s, actor->clip_frame(clip->clip->in_head_frame), goal))
+      if (!clip_hand(*clip->clip, static_cast<float>(t), s, actor->clip_frame(clip->clip->in_head_frame), goal,
+                     clip->variation))
         continue;
       if (weight < 1) {
         const ArmGoal rest = actor->rest(s);

@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "vhd_renderer/motion/director_state.hpp"
 
 namespace counterpart {
 namespace {
 
+using Eigen::Isometry3f;
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
@@ -54,7 +56,8 @@ std::string grasp_trouble(const Grasp& g) {
   if (g.path_B.empty()) return "no_path";
   if (!std::isfinite(g.duration_s) || g.duration_s < 0) return "not_a_number";
   if (g.duration_s > 0 && (g.duration_s < 1.0 || g.duration_s > 60)) return "bad_duration";
-  if (!g.style.empty() && g.style != "slam" && g.style != "hesitant") return "unknown_style";
+  const bool points = g.style == "point" && g.piece.empty();
+  if (!g.style.empty() && g.style != "slam" && g.style != "hesitant" && !points) return "unknown_style";
   if (g.hand != Hand::any && g.hand != Hand::left && g.hand != Hand::right) return "unknown_hand";
   return path_trouble(g.path_B);
 }
@@ -71,7 +74,7 @@ std::string keyframe_trouble(const Keyframe& k) {
 
 std::string navigate_trouble(const Navigate& n) {
   if (!std::isfinite(n.heading_rad)) return "not_a_number";
-  if (!n.gait.empty() && n.gait != "walk" && n.gait != "hurry") return "unknown_gait";
+  if (!n.gait.empty() && n.gait != "walk" && n.gait != "hurry" && n.gait != "instant") return "unknown_gait";
   if (n.place.empty()) return n.path_B.empty() ? "no_path" : path_trouble(n.path_B);
   const bool known = n.place == "entrance" || n.place == "chair" || n.place == "seat" || n.place == "away";
   return known ? "" : "unknown_place";
@@ -153,7 +156,11 @@ void Director::State::start(CommandQueue::Entry& entry, unsigned free_parts) {
     start_grasp(entry, *g, free_parts);
   } else if (const auto* k = std::get_if<Keyframe>(&action)) {
     const Clip& clip = clip_library().at(k->clip);
-    clips.push_back({id, ++sources, &clip, *k, clip.parts() & parts_of(k->part), now_s, -1});
+    const unsigned mask = clip.parts() & parts_of(k->part);
+    // Whoever thinks has his hands free for what he is told to do.
+    if (clip.yields) entry.needs.own &= ~part::arms;
+    clips.push_back({id, ++sources, &clip, *k, mask, now_s, -1,
+                     clip.yields && k->part == BodyPart::whole ? next_variation() : ClipVariation{}});
   } else if (const auto* n = std::get_if<Navigate>(&action)) {
     start_navigation(id, *n);
   } else if (const auto* z = std::get_if<Gaze>(&action)) {
@@ -171,6 +178,44 @@ void Director::State::start(CommandQueue::Entry& entry, unsigned free_parts) {
     stop(what, id);
     queue.end(id, FeedbackState::finished, "", -1, now_ns);
   }
+}
+
+// The hand that comes nearest to every point of a task, and how near.
+std::pair<std::size_t, float> Director::State::best_hand(const std::vector<std::size_t>& hands, const GraspTask& task) {
+  std::pair<std::size_t, float> best{right_side, 1e9F};
+  for (const std::size_t s : hands) {
+    const Isometry3f X_WP = task.touch_only
+                                ? touch_frame(*figure, anatomy.arms[s].hand, hand_shape("point"), grips[s].X_WP)
+                                : grips[s].X_WP;
+    float gap = 0;
+    std::vector<Vector3f> points = task.path_S;
+    points.push_back(task.from_S);
+    for (const Vector3f& p : points) {
+      gap = std::max(gap, actor->reach_gap_m(s, holding(X_WP, p, natural_heading(s, p), grips[s].closed)));
+    }
+    if (gap < best.second - 1e-3F) best = {s, gap};
+    if (gap <= tolerated_gap_m) break;
+  }
+  return best;
+}
+
+// What he does only while he has nothing to do ends when he has.
+void Director::State::end_idle_clips() {
+  for (RunningClip& clip : clips) {
+    if (clip.clip->yields && clip.fade_from_s < 0) clip.fade_from_s = now_s;
+  }
+}
+
+// No two of them in a row alike.
+ClipVariation Director::State::next_variation() {
+  const unsigned n = variations++;
+  const auto jitter = [n](unsigned seed) { return noise(static_cast<double>(n), seed); };
+  ClipVariation v;
+  v.mirrored = n % 3 == 2;
+  v.hands = n % 3 != 1;
+  v.head = {radians(2.5F) * jitter(71), radians(3) * jitter(72), radians(4) * jitter(73)};
+  v.place = Vector3f(jitter(74), 0.4F * jitter(75), jitter(76)) * 0.012F;
+  return v;
 }
 
 void Director::State::start_grasp(CommandQueue::Entry& entry, const Grasp& grasp, unsigned free_parts) {
@@ -202,26 +247,20 @@ void Director::State::start_grasp(CommandQueue::Entry& entry, const Grasp& grasp
     const unsigned bit = s == left_side ? part::left_arm : part::right_arm;
     if ((entry.needs.own & free_parts & bit) != 0) hands.push_back(s);
   }
-  float best_gap = 1e9F;
-  std::size_t best = right_side;
-  for (const std::size_t s : hands) {
-    float gap = 0;
-    std::vector<Vector3f> points = task.path_S;
-    points.push_back(task.from_S);
-    for (const Vector3f& p : points) {
-      gap = std::max(gap, actor->reach_gap_m(s, holding(grips[s].X_WP, p, natural_heading(s, p), grips[s].closed)));
-    }
-    if (gap < best_gap - 1e-3F) {
-      best_gap = gap;
-      best = s;
-    }
-    if (gap <= tolerated_gap_m) break;
+  auto [best, best_gap] = best_hand(hands, task);
+  // To point at something one need not reach it.
+  const Vector3f aim_S = task.from_S;
+  for (int tenths = 1; task.style == "point" && best_gap > tolerated_gap_m && tenths < 8; ++tenths) {
+    task.from_S = aim_S + (Vector3f(0, -0.15F, 0.15F) - aim_S) * (0.1F * static_cast<float>(tenths));
+    task.path_S = {task.from_S};
+    std::tie(best, best_gap) = best_hand(hands, task);
   }
   if (best_gap > tolerated_gap_m) {
     return queue.end(id, FeedbackState::failed, "out_of_reach", 1000.0 * static_cast<double>(best_gap), now_ns);
   }
   task.side = best;
   entry.needs = {best == left_side ? part::left_arm : part::right_arm, part::legs, false};
+  end_idle_clips();
   const float tallest = 2 * static_cast<float>(scene.board.piece_height_m);
   task.clearance_m = tallest + 0.014F;
   GraspMotion motion(task, grips[best], *figure, anatomy.arms[best].hand, actor->arm(best), actor->rest(best));
@@ -242,6 +281,10 @@ void Director::State::start_navigation(std::uint64_t id, const Navigate& n) {
   const bool seated = actor->posture() == Posture::seated;
   if (seated && to_seat) return queue.end(id, FeedbackState::finished, "", -1, now_ns);
 
+  if (n.gait == "instant") {
+    actor->appear(end, to_seat ? Posture::seated : Posture::standing, now_s);
+    return queue.end(id, FeedbackState::finished, "", -1, now_ns);
+  }
   std::deque<Stretch> stretches;
   Place from = actor->place();
   if (seated) {
@@ -263,6 +306,7 @@ void Director::State::start_navigation(std::uint64_t id, const Navigate& n) {
   if (moves) stretches.push_back(Stretch::walk(Walk(from, through, end, style, anatomy)));
   if (to_seat) stretches.push_back(Stretch::sit_down(home, anatomy));
   if (stretches.empty()) return queue.end(id, FeedbackState::finished, "", -1, now_ns);
+  end_idle_clips();
   navigating = id;
   going_phase.clear();
   actor->go(std::move(stretches), end, to_seat ? Posture::seated : Posture::standing, now_s);

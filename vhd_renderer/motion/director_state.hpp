@@ -5,6 +5,7 @@
 #include <list>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vhd_renderer/motion/actor.hpp"
@@ -41,6 +42,7 @@ struct RunningClip {
   unsigned mask = 0;
   double start_s = 0;
   double fade_from_s = -1;  // >= 0: it was stopped and dies away
+  ClipVariation variation;
 };
 
 struct RunningGaze {
@@ -85,6 +87,7 @@ struct Director::State {
   std::uint64_t navigating = 0;  // command; 0: none
   std::string going_phase;
   std::uint64_t sources = 16;
+  unsigned variations = 0;
 
   std::int64_t now_ns = 0;
   double now_s = 0;
@@ -108,6 +111,9 @@ struct Director::State {
   std::string why_not(const Command& command) const;  // a code; empty: fine
   void submit(const Command& command);
   void start(CommandQueue::Entry& entry, unsigned free_parts);
+  std::pair<std::size_t, float> best_hand(const std::vector<std::size_t>& hands, const GraspTask& task);
+  void end_idle_clips();
+  ClipVariation next_variation();
   void start_grasp(CommandQueue::Entry& entry, const Grasp& grasp, unsigned free_parts);
   void start_navigation(std::uint64_t id, const Navigate& navigate);
   void cancel_body(std::uint64_t id);  // the body lets go of what the command did
@@ -119,6 +125,7 @@ struct Director::State {
   void advance_clips(BodyControls& controls, ActorInputs& inputs);
   void advance_rest(ActorInputs& inputs);
   void measure_grasps();
+  Eigen::Isometry3f hand_S(std::size_t side) const;
   void carry_piece(RunningGrasp& grasp, std::size_t side);
   Eigen::Vector3f gaze_target(const Gaze& gaze) const;
   Performance performance() const;

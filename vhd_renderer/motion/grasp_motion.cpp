@@ -12,13 +12,6 @@ using Eigen::Isometry3f;
 using Eigen::Quaternionf;
 using Eigen::Vector3f;
 
-// Touching: the forefinger's tip is the grip's centre.
-Isometry3f touch_frame(const Figure& figure, const HandParts& hand, const HandShape& shape, const Isometry3f& X_WP) {
-  Isometry3f X = X_WP;
-  X.translation() = fingertip_W(figure, hand, shape, index_finger).tip;
-  return X;
-}
-
 float reach_time(float distance, const std::string& style) {
   const float usual = std::clamp(0.55F + 0.75F * distance, 0.65F, 1.05F);
   return style == "slam" ? usual * 0.8F : style == "hesitant" ? usual * 1.5F : usual;
@@ -26,7 +19,7 @@ float reach_time(float distance, const std::string& style) {
 
 }  // namespace
 
-const char* name_of(GraspPhase phase) {
+const char* phase_name(GraspPhase phase) {
   static constexpr std::array<const char*, 6> names{"reach", "close", "carry", "release", "retract", "done"};
   return names[static_cast<std::size_t>(phase)];
 }
@@ -36,6 +29,12 @@ float natural_heading(std::size_t side, const Vector3f& target_S) {
   const float dx = target_S.x() - s * 0.26F;
   const float dy = std::max(0.1F, target_S.y() + 0.55F);
   return std::clamp(0.85F * std::atan2(-dx, dy), -radians(40), radians(40));
+}
+
+Isometry3f touch_frame(const Figure& figure, const HandParts& hand, const HandShape& shape, const Isometry3f& X_WP) {
+  Isometry3f X = X_WP;
+  X.translation() = fingertip_W(figure, hand, shape, index_finger).tip;
+  return X;
 }
 
 ArmGoal holding(const Isometry3f& X_WP, const Vector3f& foot_S, float heading, const HandShape& shape) {
@@ -62,7 +61,7 @@ GraspMotion::GraspMotion(const GraspTask& task, const Grip& grip, const Figure& 
   const bool slam = task_.style == "slam";
   const bool hesitant = task_.style == "hesitant";
   end_s_[0] = static_cast<double>(reach_time((first.wrist_S - start_.wrist_S).norm(), task_.style));
-  end_s_[1] = end_s_[0] + (task_.touch_only ? 0.3 : hesitant ? 0.45 : 0.22);
+  end_s_[1] = end_s_[0] + (task_.style == "point" ? 1.0 : task_.touch_only ? 0.3 : hesitant ? 0.45 : 0.22);
   double t = end_s_[1];
   Vector3f at = task_.from_S;
   for (const Vector3f& to : task_.path_S) {

@@ -20,14 +20,14 @@ struct GraspTask {
   bool touch_only = false;              // no piece: touch the last point with the forefinger
   Eigen::Vector3f from_S{0, 0, 0};      // foot of the piece
   std::vector<Eigen::Vector3f> path_S;  // hops, the last is where it stays
-  std::string style;                    // "", "slam", "hesitant"
+  std::string style;                    // "", "slam", "hesitant"; with touch_only "point": he stays there for a second
   double duration_s = 0;                // 0: as long as a person takes
   float clearance_m = 0.03F;            // how high the piece is lifted over others, at least
 };
 
 enum class GraspPhase : std::uint8_t { reach, close, carry, release, retract, done };
 
-const char* name_of(GraspPhase phase);
+const char* phase_name(GraspPhase phase);
 
 struct GraspMoment {
   GraspPhase phase = GraspPhase::reach;
@@ -48,6 +48,7 @@ class GraspMotion {
   GraspMoment at(double t_s) const;
   double start_of(GraspPhase phase) const;
   const GraspTask& task() const { return task_; }
+  const Eigen::Isometry3f& X_WP() const { return X_WP_; }  // what is brought to the points of the task
 
  private:
   struct Hop {
@@ -69,6 +70,10 @@ class GraspMotion {
   std::vector<Hop> hops_;
   std::array<double, 5> end_s_{};  // of reach, close, carry, release, retract
 };
+
+// For touching instead of holding: the forefinger's tip takes the place of the piece's foot in the grip X_WP.
+Eigen::Isometry3f touch_frame(const Figure& figure, const HandParts& hand, const HandShape& shape,
+                              const Eigen::Isometry3f& X_WP);
 
 // The wrist pose that holds a piece whose foot is at a point, the hand pointing along `heading`.
 ArmGoal holding(const Eigen::Isometry3f& X_WP, const Eigen::Vector3f& foot_S, float heading, const HandShape& shape);

@@ -418,12 +418,14 @@ TEST(Hub, DismissesWhoBreaksTheRules) {
   const Bytes rubbish(100, 'x');
   const std::vector<std::function<void(Stranger&)>> sins{
       [&](Stranger& s) { s.raw(rubbish); },
-      [](Stranger& s) { s.say(command(1), 1); },                       // before HELLO
-      [](Stranger& s) { s.say(Hello{}), s.say(command(1), 2); },       // a gap
-      [](Stranger& s) { s.say(Hello{}), s.say(Hello{}); },             // twice
-      [](Stranger& s) { s.say(Hello{}), s.say(Acknowledge{7}); },      // of what was never sent
+      [](Stranger& s) { s.say(command(1), 1); },                        // before HELLO
+      [](Stranger& s) { s.say(Hello{}), s.say(command(1), 2); },        // a gap
+      [](Stranger& s) { s.say(Hello{}), s.say(Hello{}); },              // twice
+      [](Stranger& s) { s.say(Hello{}), s.say(Acknowledge{7}); },       // of what was never sent
       [](Stranger& s) { s.say(Hello{}), s.say(17, Bytes(180, 255)); },  // a pose of NaN
-      [](Stranger& s) { s.say(Hello{}), s.say(48, Bytes{'{', '}'}, 1); },
+      [](Stranger& s) {
+        s.say(Hello{}), s.say(48, Bytes{'{', '}'}, 1);
+      },
   };
   for (std::size_t i = 0; i < sins.size(); ++i) {
     Hub hub = a_server();

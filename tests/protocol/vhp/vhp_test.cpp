@@ -26,7 +26,8 @@ Ran vhp(const std::string& arguments) {
   Ran ran;
   FILE* pipe = popen(line.c_str(), "r");
   std::array<char, 4096> buffer{};
-  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe)) ran.out.append(buffer.data(), count);
+  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe))
+    ran.out.append(buffer.data(), count);
   const int status = pclose(pipe);
   ran.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return ran;
@@ -60,9 +61,10 @@ std::vector<Command> answer_one(Endpoint& renderer, FeedbackState last) {
 }
 
 TEST(Vhp, WrongUsageIsExitCodeTwoWithASentence) {
-  for (const char* arguments : {"", "fly", "send", "send say", "send grasp light_31 nowhere", "send express smile --weight 3",
-                                "monitor nonsense", "replay /etc/passwd --as tracker", "replay /nowhere --as tracker --listen a",
-                                "send control castle", "capture", "send control corners 1,2"}) {
+  for (const char* arguments :
+       {"", "fly", "send", "send say", "send grasp light_31 nowhere", "send express smile --weight 3",
+        "monitor nonsense", "replay /etc/passwd --as tracker", "replay /nowhere --as tracker --listen a",
+        "send control castle", "capture", "send control corners 1,2"}) {
     const Ran ran = vhp(arguments);
     EXPECT_EQ(ran.code, 2) << arguments << ": " << ran.out;
     EXPECT_GT(ran.out.size(), 10U) << arguments;
@@ -83,7 +85,8 @@ TEST(Vhp, NobodyThereIsExitCodeOneWithASentence) {
 TEST(Vhp, SendWaitsForTheFinalAnswer) {
   auto renderer = listen_tcp("127.0.0.1:0", options_of(Role::renderer));
   ASSERT_TRUE(renderer);
-  auto run = std::async([&] { return vhp("send grasp light_31 27 0.1,-0.2 --hand left --to " + (*renderer)->address()); });
+  auto run =
+      std::async([&] { return vhp("send grasp light_31 27 0.1,-0.2 --hand left --to " + (*renderer)->address()); });
   const auto commands = answer_one(**renderer, FeedbackState::finished);
   const Ran ran = run.get();
   EXPECT_EQ(ran.code, 0) << ran.out;
@@ -135,7 +138,8 @@ TEST(Vhp, ReplaysATrackerFromACapture) {
   std::vector<Command> sent;
   {
     auto tracker = listen_tcp("127.0.0.1:0", options_of(Role::tracker));
-    auto record = std::async([&, address = (*tracker)->address()] { return vhp("record --for 1.5 " + address + " " + file); });
+    auto record =
+        std::async([&, address = (*tracker)->address()] { return vhp("record --for 1.5 " + address + " " + file); });
     for (int i = 0; i < 50 && (*tracker)->stats().empty(); ++i) static_cast<void>((*tracker)->receive(kSecond / 10));
     for (std::uint64_t id = 1; id <= 20; ++id) {
       Command command;
