@@ -48,7 +48,7 @@ Eigen::Isometry3d camera_at_X_CR(const CameraPath& path, double t_s) {
   if (path.sweep_rad_s > 0) {
     const double way = path.sweep_rad_s * (t_s < 0 ? 0 : t_s < 1 ? t_s * t_s / 2 : t_s - 0.5);
     turn += path.sweep_radius_rad *
-            Eigen::Vector3d(std::cos(way / path.sweep_radius_rad) - 1, std::sin(way / path.sweep_radius_rad), 0);
+            Eigen::Vector3d(std::cos(way / path.sweep_radius_rad), std::sin(way / path.sweep_radius_rad), 0);
   }
   Eigen::Isometry3d X_CR = look_at_X_CB(eye, path.target_R);
   if (turn.norm() > 0) X_CR = Eigen::Isometry3d(Eigen::AngleAxisd(turn.norm(), turn.normalized())) * X_CR;

@@ -16,7 +16,7 @@ struct CameraPath {
   double orbit_period_s = 16;
   std::optional<Eigen::Vector3d> dolly_to_R;  // to and fro between eye_R and here
   double dolly_period_s = 12;
-  double sweep_rad_s = 0;  // the view's middle runs round a circle at this speed, after a second of getting there
+  double sweep_rad_s = 0;  // the view's middle runs round the target in a circle at this speed, reached after a second
   double sweep_radius_rad = 0.2;
   double zoom_low = 1;  // the focal length's factor runs to and fro between both, from 1
   double zoom_high = 1;

@@ -21,6 +21,9 @@ constexpr float kTableFarY_m = -0.42f;  // the virtual player's edge
 constexpr float kTableThickness_m = 0.03f;
 constexpr float kFloorZ_m = -0.755f;
 constexpr float kWallY_m = -2.3f;
+constexpr float kSideWallX_m = 3.5f;
+const Eigen::Vector3f kWallPaint(0.60f, 0.57f, 0.51f);  // encoded, as the wall's texture
+constexpr int kPainted = 6;  // the last things of the furniture: floor, walls, skirting boards
 
 Eigen::Affine3f at(float x, float y, float z) {
   return Eigen::Affine3f(Eigen::Translation3f(x, y, z));
@@ -52,6 +55,11 @@ MeshData cup_mesh() {
   for (int i = 0; i < kBeads; ++i) handle.push_back({bead(i), bead(i + 1), 0.0055f, 0.0055f});
   append(mesh, blended(handle, 0.004f, 0.003f), {0, 0, 0});
   return mesh;
+}
+
+// What lies outside the light that is computed is painted as bright as the room is.
+float painted_light(const World& world) {
+  return std::sqrt(0.04f + 0.96f * static_cast<float>(world.light));
 }
 
 }  // namespace
@@ -144,7 +152,7 @@ Result<void> Room::State::build() {
   const int finer = options.fine ? 3 : 1;
   const Eigen::Affine3f upright(Eigen::AngleAxisf(EIGEN_PI, Eigen::Vector3f::UnitZ()) *
                                 Eigen::AngleAxisf(static_cast<float>(EIGEN_PI) / 2, Eigen::Vector3f::UnitX()));
-  furniture.resize(5);
+  furniture.resize(9);
   add(furniture[0].item, plane_mesh(side, side, 14 * finer, 14 * finer), {board_top, board_grain}, at(0, 0, 0), false);
   add(furniture[1].item, skirt_mesh({side, side, thickness}),
       {SurfaceId::lit, grain, {0.13f, 0.06f, 0.03f}, 0.1f, 30, false}, at(0, 0, -thickness / 2 - 0.0002f), true);
@@ -156,6 +164,15 @@ Result<void> Room::State::build() {
       at(0, kWallY_m + 2.5f, kFloorZ_m), false);
   add(furniture[4].item, plane_mesh(7.f, 2.6f, 7 * finer, 3 * finer), {painted, wall},
       at(0, kWallY_m, kFloorZ_m + 1.3f) * upright, false);
+  for (const std::size_t k : {0u, 1u}) {
+    const float sign = k == 0 ? -1.f : 1.f;
+    const Eigen::Affine3f turned(Eigen::AngleAxisf(sign * static_cast<float>(EIGEN_PI) / 2, Eigen::Vector3f::UnitZ()));
+    const float y = kWallY_m + 2.5f;
+    add(furniture[5 + k].item, plane_mesh(5.f, 2.6f, 5 * finer, 3 * finer), {painted, TextureId::white, kWallPaint},
+        at(sign * kSideWallX_m, y, kFloorZ_m + 1.3f) * turned * upright, false);
+    add(furniture[7 + k].item, plane_mesh(5.f, 0.09f, 5 * finer, 1), {painted, TextureId::white, 1.25f * kWallPaint},
+        at(sign * (kSideWallX_m - 0.01f), y, kFloorZ_m + 0.045f) * turned * upright, false);
+  }
 
   constexpr int kTilesX = 6;
   constexpr int kTilesY = 4;
@@ -298,15 +315,16 @@ std::vector<DrawItem> Room::State::items(const World& world) const {
       item.material.colour = level_light(light);
     }
   }
-  // What the light does not reach by itself is painted as bright as the room is.
-  const float seen = std::sqrt(0.04f + 0.96f * static_cast<float>(world.light));
-  for (DrawItem& item : std::span(items).last(2)) item.material.colour *= seen;
+  const float seen = painted_light(world);
+  for (DrawItem& item : std::span(items).last(kPainted)) item.material.colour *= seen;
   return items;
 }
 
 cv::Mat Room::picture(const World& world, const View& view, const std::optional<cv::Rect>& box) {
   DrawOptions options;
   options.box = box;
+  const Eigen::Vector3f ceiling = painted_light(world) * kWallPaint;  // beyond the walls
+  options.background = {ceiling[2], ceiling[1], ceiling[0], 1};
   const Drawing drawing = state_->renderer->draw(view, state_->lighting(world), state_->items(world), options);
   cv::Mat bgr;
   cv::cvtColor(drawing.bgra, bgr, cv::COLOR_BGRA2BGR);
