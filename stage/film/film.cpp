@@ -15,7 +15,9 @@ Film::Film(const Scenario& scenario, std::unique_ptr<Room> room)
     : scenario_(scenario), room_(std::move(room)), now_(starting_world(scenario.board)), player_(scenario.player) {
   now_.player_present = scenario.player_present;
   now_.light = scenario.light;
-  if (scenario.no_pieces) now_.pieces.clear();
+  if (scenario.no_pieces || scenario.no_board) now_.pieces.clear();
+  now_.board_present = !scenario.no_board;
+  set_scene(now_, 0);
   world_ = now_;
 }
 
@@ -24,6 +26,7 @@ Result<Film> Film::begin(const Scenario& scenario) {
   options.width = scenario.intrinsics.width;
   options.height = scenario.intrinsics.height;
   options.board = scenario.board;
+  options.objects = scenario.objects;
   const auto& dist = scenario.intrinsics.dist;
   options.fine = std::any_of(dist.begin(), dist.end(), [](double k) { return k != 0; });
   Result<std::unique_ptr<Room>> room = Room::furnish(options);
@@ -42,12 +45,20 @@ View Film::view_at(double t_s, const World& world) const {
   return view;
 }
 
+void Film::set_scene(World& world, double t_s) const {
+  apply_events(scenario_.events, t_s, scenario_.light, world);
+  world.objects.clear();
+  for (const ObjectPlan& plan : scenario_.objects) {
+    world.objects.push_back(object_at(plan, -scenario_.board.thickness_m, t_s));
+  }
+}
+
 void Film::pass_until(double t_s) {
   if (t_s > now_s_) {
     player_.step(t_s - now_s_, now_);
     now_s_ = t_s;
   }
-  apply_events(scenario_.events, t_s, scenario_.light, now_);
+  set_scene(now_, t_s);
 }
 
 namespace {
@@ -129,7 +140,7 @@ Shot Film::next() {
   const bool partial = scenario_.shutter.open_s > 0 || scenario_.shutter.readout_s > 0 || scenario_.shutter.interlaced;
   if (!partial) pass_until(t_s);
   world_ = now_;
-  if (partial) apply_events(scenario_.events, t_s, scenario_.light, world_);
+  if (partial) set_scene(world_, t_s);
   view_ = view_at(t_s, world_);
   cover_board(scenario_.events, t_s, view_, world_);
 
@@ -143,9 +154,15 @@ Shot Film::next() {
   truth.view = view_;
   truth.board = scenario_.board;
   truth.occupancy = occupancy_of(world_);
+  truth.holds_piece = world_.hand.held_piece >= 0;
   const Hidden hidden = hidden_shares(world_, view_);
   truth.hand_share = hidden.surface_by_arm;
   truth.edges_hidden = hidden.edges;
+  truth.board_present = world_.board_present;
+  for (std::size_t i = 0; i < world_.objects.size(); ++i) {
+    truth.objects.push_back({world_.objects[i].name, view_.X_CB * world_.X_RB.inverse() * world_.objects[i].X_RO,
+                             object_edges_hidden(world_, i, view_)});
+  }
   if (next_frame_ > 0) {
     const double half = scenario_.board.squares * scenario_.board.square_size_m / 2;
     for (const double x : {-half, half}) {

@@ -10,16 +10,25 @@
 
 namespace counterpart::stage {
 
+struct ObjectTruth {
+  std::string name;
+  Eigen::Isometry3d X_CO = Eigen::Isometry3d::Identity();
+  double edges_hidden = 0;  // see object_edges_hidden
+};
+
 // What was so at the middle of the exposure. Written for those who measure; nobody on the link gets it.
 struct Truth {
   FrameStamp stamp;
   View view;
-  std::string occupancy;  // of the real pieces, see occupancy_of
-  double hand_share = 0;  // of the playing surface, hidden by the player's arm
+  std::string occupancy;     // of the real pieces, see occupancy_of
+  bool holds_piece = false;  // in his hand: it stands nowhere
+  double hand_share = 0;     // of the playing surface, hidden by the player's arm
   double edges_hidden =
       0;  // share of the outline's and the grid's length in the picture hidden by arm or pieces, or outside it
   double motion_px = 0;  // how far the board's corners moved since the frame before, the mean of four
   BoardGeometry board;
+  bool board_present = true;
+  std::vector<ObjectTruth> objects;
 };
 
 struct Shot {
@@ -48,6 +57,8 @@ class Film {
 
  private:
   Film(const Scenario& scenario, std::unique_ptr<Room> room);
+  // What stands and happens in the room without the player.
+  void set_scene(World& world, double t_s) const;
   View view_at(double t_s, const World& world) const;
   // Lets time pass in the room up to t_s; time never runs backwards.
   void pass_until(double t_s);

@@ -127,10 +127,56 @@ void Player::play(const BoardState& state, World& world) {
   if (piece < 0) return;
   taken_off_ = 0;
   pause(world, random(0.2, 0.7));
+  if (knocks_made_ < options_.knocks_over.size() && options_.knocks_over[knocks_made_] <= moves_made_ + 1) {
+    ++knocks_made_;
+    knock_over(world, piece);
+  }
   reach_for(world, piece);
   carry(world, piece, move.path);
   withdraw(world);
   ++moves_made_;
+}
+
+// On the way to one piece the hand brushes the next, which tumbles half a square to the side, where nothing ever
+// stands; he puts it up again.
+void Player::knock_over(const World& world, int beside) {
+  int victim = -1;
+  double nearest = 1e9;
+  const Eigen::Vector3d& goal = world.pieces[static_cast<std::size_t>(beside)].p_B;
+  for (std::size_t i = 0; i < world.pieces.size(); ++i) {
+    if (world.pieces[i].square == 0 || world.pieces[i].king || static_cast<int>(i) == beside) continue;
+    const double distance = (world.pieces[i].p_B - goal).norm();
+    if (distance < nearest) {
+      nearest = distance;
+      victim = static_cast<int>(i);
+    }
+  }
+  if (victim < 0) return;
+  const RealPiece& piece = world.pieces[static_cast<std::size_t>(victim)];
+  const Eigen::Vector3d grip(0, 0, grip_height_m(world.board));
+  const double aside = (piece.p_B.x() > 0 ? -0.6 : 0.6) * world.board.square_size_m;
+
+  Stroke stroke;
+  stroke.to_B = piece.p_B + grip;
+  stroke.duration_s = kReach_s + kFar_s_m * (stroke.to_B - hand_after_).norm();
+  stroke.arc_m = 0.03;
+  gestures_.add(stroke);
+  stroke.end = StrokeEnd::knock;
+  stroke.piece = victim;
+  stroke.foot_B = piece.p_B + Eigen::Vector3d(aside, 0, 0);
+  stroke.to_B += Eigen::Vector3d(0.3 * aside, 0, 0.01);
+  stroke.duration_s = 0.22;
+  stroke.arc_m = 0;
+  gestures_.add(stroke);
+  hand_after_ = stroke.to_B;
+  pause(world, random(0.5, 0.9));
+  stroke.end = StrokeEnd::take;
+  stroke.to_B = stroke.foot_B + grip;
+  stroke.duration_s = kReach_s;
+  gestures_.add(stroke);
+  hand_after_ = stroke.to_B;
+  pause(world, kFingers_s);
+  carry(world, victim, {piece.square, piece.square});
 }
 
 std::vector<std::pair<int, int>> Player::wrong_piece(const World& world) const {

@@ -39,8 +39,9 @@ struct PlayerOptions {
   double speed = 1;       // 2: twice as fast
   bool practise = false;  // no game: moves his pieces about by himself
   std::vector<IllegalMove> illegal_moves;
-  std::vector<HandRest> rests;  // in order of time
-  double forgets_s = 0;         // takes off only one captured piece at once and leaves the next standing for so long
+  std::vector<HandRest> rests;   // in order of time
+  std::vector<int> knocks_over;  // before these of his legal moves, counted from 1, he knocks a piece over; rising
+  double forgets_s = 0;          // takes off only one captured piece at once and leaves the next standing for so long
 };
 
 class Player {
@@ -59,6 +60,7 @@ class Player {
   bool play_illegally(const World& world);
   std::vector<std::pair<int, int>> wrong_piece(const World& world) const;
   bool rest_hand(const World& world);
+  void knock_over(const World& world, int beside);
   void practise(World& world);
   void make_board_show(const std::vector<int>& wanted, const World& world);
   void crown_kings(const BoardState& state, const World& world);
@@ -79,6 +81,7 @@ class Player {
   int places_used_ = 0;
   std::size_t illegal_made_ = 0;
   std::size_t rests_made_ = 0;
+  std::size_t knocks_made_ = 0;
   int taken_off_ = 0;
   double time_s_ = 0;
 };

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "protocol/vocabulary/board_geometry.hpp"
+#include "stage/room/room_object.hpp"
 
 namespace counterpart::stage {
 
@@ -16,6 +17,7 @@ struct RealPiece {
   bool king = false;
   Eigen::Vector3d p_B{0, 0, 0};  // centre of its foot
   double turn_rad = 0;           // how it happens to be turned round its axis
+  double roll_rad = 0;           // of a piece that is knocked over: half a turn is upside down
 };
 
 struct HandState {
@@ -37,6 +39,8 @@ struct World {
   std::optional<Eigen::Vector3d> cup_R;                    // a coffee cup's foot
   std::optional<Sheet> sheet;
   std::vector<RealPiece> pieces;
+  std::vector<RoomObject> objects;
+  bool board_present = true;
   bool player_present = true;
   HandState hand;
 };

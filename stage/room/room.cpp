@@ -1,6 +1,7 @@
 #include "stage/room/room.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -15,11 +16,6 @@
 namespace counterpart::stage {
 namespace {
 
-constexpr float kTableX_m = 1.3f;
-constexpr float kTableNearY_m = 0.52f;  // the real player's edge
-constexpr float kTableFarY_m = -0.42f;  // the virtual player's edge
-constexpr float kTableThickness_m = 0.03f;
-constexpr float kFloorZ_m = -0.755f;
 constexpr float kWallY_m = -2.3f;
 constexpr float kSideWallX_m = 3.5f;
 const Eigen::Vector3f kWallPaint(0.60f, 0.57f, 0.51f);  // encoded, as the wall's texture
@@ -57,6 +53,16 @@ MeshData cup_mesh() {
   return mesh;
 }
 
+// Where the things on the floor keep the light off it, from the floor's middle.
+std::vector<FloorShade> floor_shades(const RoomOptions& options) {
+  std::vector<FloorShade> shades;
+  for (const ObjectPlan& plan : options.objects) {
+    if (!plan.on_floor) continue;
+    shades.push_back({plan.place_R_m - Eigen::Vector2d(0, kWallY_m + 2.5), plan.size_m.head<2>() / 2});
+  }
+  return shades;
+}
+
 // What lies outside the light that is computed is painted as bright as the room is.
 float painted_light(const World& world) {
   return std::sqrt(0.04f + 0.96f * static_cast<float>(world.light));
@@ -83,6 +89,7 @@ struct Room::State {
   SurfaceId painted{};
   DrawItem pieces, cup, coffee, sheet;
   DrawItem hand, wrist, forearm, upper_arm;
+  std::vector<DrawItem> objects;       // as in RoomOptions
   DrawItem piece_shadow, hand_shadow;  // coarser, and not seen themselves
 
   Lighting lighting(const World& world) const;
@@ -132,7 +139,7 @@ Result<void> Room::State::build() {
       r.add_texture(board_grain_texture(1024, board.squares, 2 * board.border_m / static_cast<double>(side), seed));
   const TextureId grain = r.add_texture(wood_texture(512, 512, {236, 236, 236}, {170, 170, 170}, seed));
   const TextureId table = r.add_texture(table_texture(1024, 512, seed + 1));
-  const TextureId floor = r.add_texture(floor_texture(1024, 1024, seed + 2));
+  const TextureId floor = r.add_texture(floor_texture(1024, 1024, seed + 2, floor_shades(options)));
   const TextureId wall = r.add_texture(wall_texture(1600, 800, seed + 3));
   const TextureId cloth = r.add_texture(cloth_texture(256, 256, seed + 4));
   const TextureId print = r.add_texture(newspaper_texture(512, 512, seed + 5));
@@ -152,26 +159,28 @@ Result<void> Room::State::build() {
   const int finer = options.fine ? 3 : 1;
   const Eigen::Affine3f upright(Eigen::AngleAxisf(EIGEN_PI, Eigen::Vector3f::UnitZ()) *
                                 Eigen::AngleAxisf(static_cast<float>(EIGEN_PI) / 2, Eigen::Vector3f::UnitX()));
+  constexpr auto floor_z = static_cast<float>(kFloorZ_m);
   furniture.resize(9);
   add(furniture[0].item, plane_mesh(side, side, 14 * finer, 14 * finer), {board_top, board_grain}, at(0, 0, 0), false);
   add(furniture[1].item, skirt_mesh({side, side, thickness}),
-      {SurfaceId::lit, grain, {0.13f, 0.06f, 0.03f}, 0.1f, 30, false}, at(0, 0, -thickness / 2 - 0.0002f), true);
+      {SurfaceId::lit, grain, {0.13f, 0.06f, 0.03f}, 0.1f, 30, false}, at(0, 0, -thickness / 2 + 0.0002f),
+      true);  // no gap under the top
   furniture[0].on_board = furniture[1].on_board = true;
   add(furniture[2].item, skirt_mesh({kTableX_m, table_y, kTableThickness_m}),
       {SurfaceId::lit, table, {0.8f, 0.75f, 0.7f}, 0.05f, 20, false},
       at(0, table_middle, -thickness - kTableThickness_m / 2 - 0.0005f), false);
-  add(furniture[3].item, plane_mesh(7.f, 5.f, 10 * finer, 8 * finer), {painted, floor},
-      at(0, kWallY_m + 2.5f, kFloorZ_m), false);
+  add(furniture[3].item, plane_mesh(7.f, 5.f, 10 * finer, 8 * finer), {painted, floor}, at(0, kWallY_m + 2.5f, floor_z),
+      false);
   add(furniture[4].item, plane_mesh(7.f, 2.6f, 7 * finer, 3 * finer), {painted, wall},
-      at(0, kWallY_m, kFloorZ_m + 1.3f) * upright, false);
+      at(0, kWallY_m, floor_z + 1.3f) * upright, false);
   for (const std::size_t k : {0u, 1u}) {
     const float sign = k == 0 ? -1.f : 1.f;
     const Eigen::Affine3f turned(Eigen::AngleAxisf(sign * static_cast<float>(EIGEN_PI) / 2, Eigen::Vector3f::UnitZ()));
     const float y = kWallY_m + 2.5f;
     add(furniture[5 + k].item, plane_mesh(5.f, 2.6f, 5 * finer, 3 * finer), {painted, TextureId::white, kWallPaint},
-        at(sign * kSideWallX_m, y, kFloorZ_m + 1.3f) * turned * upright, false);
+        at(sign * kSideWallX_m, y, floor_z + 1.3f) * turned * upright, false);
     add(furniture[7 + k].item, plane_mesh(5.f, 0.09f, 5 * finer, 1), {painted, TextureId::white, 1.25f * kWallPaint},
-        at(sign * (kSideWallX_m - 0.01f), y, kFloorZ_m + 0.045f) * turned * upright, false);
+        at(sign * (kSideWallX_m - 0.01f), y, floor_z + 0.045f) * turned * upright, false);
   }
 
   constexpr int kTilesX = 6;
@@ -213,6 +222,14 @@ Result<void> Room::State::build() {
   add(cup, cup_mesh(), {SurfaceId::lit, TextureId::white, {0.80f, 0.78f, 0.74f}, 0.35f, 60, false}, here, true);
   add(coffee, lathe_mesh({{0.0365f, 0.075f}, {0, 0.075f}}, 24),
       {SurfaceId::lit, TextureId::white, {0.05f, 0.025f, 0.012f}, 0.3f, 60, false}, here, false);
+  const std::array<Eigen::Vector3f, 3> paints{{{0.42f, 0.29f, 0.17f}, {0.52f, 0.47f, 0.40f}, {0.24f, 0.11f, 0.055f}}};
+  objects.resize(options.objects.size());
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const ObjectPlan& plan = options.objects[i];
+    const auto paint = static_cast<std::size_t>(plan.kind) - 1;
+    add(objects[i], mesh_of(polygon_model(plan.kind, plan.size_m), options.fine ? 0.03 : 0.5),
+        {SurfaceId::lit, grain, paints.at(paint), 0.03f, 16, false}, here, !plan.on_floor);
+  }
   add(sheet, plane_mesh(1, 1, 8, 8), {SurfaceId::lit, print, {0.78f, 0.77f, 0.72f}, 0.01f, 8, true}, here, true);
   return made;
 }
@@ -240,8 +257,10 @@ std::vector<Circle> Room::State::shadows_on_table(const World& world, const Ligh
     const Eigen::Vector3f foot = p - direction * ((p.z() - table_z) / direction.z());
     result.push_back({foot.head<2>(), static_cast<float>(radius_m) / direction.z() + 2 * light.softness_m});
   };
-  const double board_half = 0.5 * world.board.squares * world.board.square_size_m + world.board.border_m;
-  add({0, 0, table_z / 2}, 1.42 * board_half);
+  if (world.board_present) {
+    const double board_half = 0.5 * world.board.squares * world.board.square_size_m + world.board.border_m;
+    add({0, 0, table_z / 2}, 1.42 * board_half);
+  }
   for (const RealPiece& piece : world.pieces) {
     if (piece.square == 0) add(piece.p_B, 2 * world.board.piece_radius_m);
   }
@@ -252,6 +271,9 @@ std::vector<Circle> Room::State::shadows_on_table(const World& world, const Ligh
       add(pose.X_BForearm * Eigen::Vector3d(0, 0, share * kForearm_m), 0.11);
       add(pose.X_BUpperArm * Eigen::Vector3d(0, 0, share * kUpperArm_m), 0.13);
     }
+  }
+  for (const RoomObject& object : world.objects) {
+    add(world.X_RB.inverse() * object.X_RO.translation(), object.size_m.norm() / 2);
   }
   if (world.cup_R) add(world.X_RB.inverse() * (*world.cup_R + Eigen::Vector3d(0, 0, 0.05)), 0.09);
   if (world.sheet) add(world.sheet->X_BS.translation(), std::hypot(world.sheet->size_x_m, world.sheet->size_y_m) / 2);
@@ -265,6 +287,10 @@ std::vector<DrawItem> Room::State::items(const World& world) const {
   for (const RealPiece& piece : world.pieces) {
     Eigen::Affine3f X_BO(Eigen::Translation3f(piece.p_B.cast<float>()));
     X_BO.rotate(Eigen::AngleAxisf(static_cast<float>(piece.turn_rad), Eigen::Vector3f::UnitZ()));
+    if (piece.roll_rad != 0) {
+      const Eigen::Translation3f up(0, 0, static_cast<float>(world.board.piece_height_m) / 2);
+      X_BO = X_BO * up * Eigen::AngleAxisf(static_cast<float>(piece.roll_rad), Eigen::Vector3f::UnitX()) * up.inverse();
+    }
     standing.X_BO.push_back(X_BO);
     if (piece.king) {
       standing.X_BO.push_back(
@@ -296,6 +322,10 @@ std::vector<DrawItem> Room::State::items(const World& world) const {
       items.back().X_BO = {X_BR * Eigen::Translation3f(world.cup_R->cast<float>())};
     }
   }
+  for (std::size_t i = 0; i < world.objects.size(); ++i) {
+    items.push_back(objects.at(i));
+    items.back().X_BO = {X_BR * Eigen::Affine3f(world.objects[i].X_RO.cast<float>())};
+  }
   items.push_back(standing);
   items.push_back(piece_shadow);
   items.back().X_BO = standing.X_BO;
@@ -307,6 +337,7 @@ std::vector<DrawItem> Room::State::items(const World& world) const {
     });
   };
   for (const Furniture& piece : furniture) {
+    if (piece.on_board && !world.board_present) continue;
     items.push_back(piece.item);
     DrawItem& item = items.back();
     if (!piece.on_board) item.X_BO[0] = X_BR * item.X_BO[0];

@@ -17,8 +17,9 @@ struct RoomOptions {
   int height = 576;
   BoardGeometry board;
   Eigen::Vector3f light_direction_R{-0.45f, 0.25f, 0.85f};
-  bool fine = false;       // cuts flat things finer, for a lens that bends lines
-  std::uint64_t seed = 1;  // of the grain of the wood
+  std::vector<ObjectPlan> objects;  // those that a world may hold, in its order
+  bool fine = false;                // cuts flat things finer, for a lens that bends lines
+  std::uint64_t seed = 1;           // of the grain of the wood
 };
 
 class Room {

@@ -137,16 +137,21 @@ Texture table_texture(int width, int height, std::uint64_t seed) {
   return to_texture(rgb);
 }
 
-Texture floor_texture(int width, int height, std::uint64_t seed) {
+Texture floor_texture(int width, int height, std::uint64_t seed, const std::vector<FloorShade>& shades) {
   const cv::Mat parquet = planks(width / 2, height / 2, 16, {150, 112, 78}, {112, 78, 50}, seed);
   cv::Mat rgb;
   cv::repeat(parquet, 2, 2, rgb);
-  shade(rgb, [](double u, double v) {
+  shade(rgb, [&](double u, double v) {
     const double x = 7 * (u - 0.5);
     const double y = 5 * (0.5 - v);
     const double sheen = std::exp(-0.9 * std::abs(x - 1)) * smoothstep(1.5, -2.5, y);
     const double clear_of_table = smoothstep(0.4, 1.1, std::hypot(0.9 * x, 1.2 * (y + 0.15)));
-    return (0.40 + 0.60 * sheen) * (0.35 + 0.65 * clear_of_table);
+    double light = (0.40 + 0.60 * sheen) * (0.35 + 0.65 * clear_of_table);
+    for (const FloorShade& s : shades) {
+      const Eigen::Vector2d off = (Eigen::Vector2d(x, y) - s.middle_m).cwiseAbs() - s.half_size_m;
+      light *= 0.5 + 0.5 * smoothstep(-0.08, 0.18, off.cwiseMax(-0.08).norm() * (off.maxCoeff() > 0 ? 1 : -1));
+    }
+    return light;
   });
   return to_texture(rgb);
 }

@@ -229,6 +229,13 @@ Reader board_keys(Scenario& s) {
        }},
       {"piece_height_mm", millimetres(s.board.piece_height_m, 1, 40)},
       {"empty", flag(s.no_pieces)},
+      {"present",
+       [&s](const Node& node) {
+         bool present = true;
+         const Result<void> read = node.flag(present);
+         s.no_board = !present;
+         return read;
+       }},
       {"played_on",
        [&s](const Node& node) {
          return node.choice<SquareColour>(s.board.played_on,
@@ -284,6 +291,74 @@ Result<void> read_event(const Node& node, Scenario& s) {
   return read;
 }
 
+Result<void> read_name(const Node& node, const Scenario& s, std::string& target) {
+  const Result<void> read = node.text(target);
+  if (!read) return read;
+  const bool plain = !target.empty() && target.size() <= 32 && std::all_of(target.begin(), target.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  });
+  if (!plain) return node.complain("1 to 32 letters, digits and _ (a folder is named so)");
+  for (const ObjectPlan& other : s.objects) {
+    if (other.name == target) return node.complain("a name that no other object has");
+  }
+  return {};
+}
+
+Result<void> read_object(const Node& node, Scenario& s) {
+  ObjectPlan plan;
+  plan.name = "object" + std::to_string(s.objects.size() + 1);
+  bool sized = false, placed = false;
+  Result<void> read = node.object({
+      {"name", [&](const Node& name) { return read_name(name, s, plan.name); }},
+      {"kind",
+       [&](const Node& kind) {
+         return kind.choice<ObjectKind>(
+             plan.kind, {{"box", ObjectKind::box}, {"table", ObjectKind::table}, {"chair", ObjectKind::chair}});
+       }},
+      {"size_mm",
+       [&](const Node& size) {
+         const Result<void> numbers = size.numbers(plan.size_m, 3, 20, 2000);
+         plan.size_m /= 1000;
+         sized = true;
+         return numbers;
+       }},
+      {"on",
+       [&](const Node& on) {
+         placed = true;
+         return on.choice<bool>(plan.on_floor, {{"table", false}, {"floor", true}});
+       }},
+      {"at_mm",
+       [&](const Node& at) {
+         const Result<void> numbers = at.numbers(plan.place_R_m, 2, -3000, 3000);
+         plan.place_R_m /= 1000;
+         return numbers;
+       }},
+      {"turn_deg", degrees(plan.turn_rad, -180, 180)},
+      {"by_mm",
+       [&](const Node& by) {
+         const Result<void> numbers = by.numbers(plan.by_m, 2, -1000, 1000);
+         plan.by_m /= 1000;
+         return numbers;
+       }},
+      {"swing_deg", degrees(plan.swing_rad, -180, 180)},
+      {"period_s", number(plan.period_s, 0.5, 1000)},
+  });
+  if (!read) return read;
+  if (!placed) plan.on_floor = plan.kind != ObjectKind::box;
+  if (!sized) plan.size_m = usual_size_m(plan.kind);
+  const Eigen::Vector3d least = plan.kind == ObjectKind::box     ? Eigen::Vector3d(0.02, 0.02, 0.02)
+                                : plan.kind == ObjectKind::table ? Eigen::Vector3d(0.15, 0.15, 0.10)
+                                                                 : Eigen::Vector3d(0.15, 0.15, 0.20);
+  if ((plan.size_m.array() < least.array() - 1e-12).any()) {
+    return node.complain("no smaller than 150 x 150 x 100 mm (a table) or 150 x 150 x 200 mm (a chair)");
+  }
+  if (plan.on_floor && (plan.by_m.norm() > 0 || plan.swing_rad != 0)) {
+    return node.complain("without by_mm and swing_deg on the floor: only what is on the table moves");
+  }
+  s.objects.push_back(plan);
+  return {};
+}
+
 Result<void> read_rest(const Node& node, Scenario& s) {
   HandRest rest;
   const Result<void> read = node.object({
@@ -300,12 +375,21 @@ Result<void> read_rest(const Node& node, Scenario& s) {
   return read;
 }
 
+Result<void> read_knock(const Node& node, Scenario& s) {
+  int at_move = 1;
+  const Result<void> read = node.whole(at_move, 1, 500);
+  if (read) s.player.knocks_over.push_back(at_move);
+  return read;
+}
+
 Reader player_keys(Scenario& s) {
   return object({
       {"present", flag(s.player_present)},
       {"practise", flag(s.player.practise)},
       {"speed", number(s.player.speed, 0.1, 5)},
       {"forgets_s", number(s.player.forgets_s, 0, 600)},
+      {"knocks_over",
+       [&s](const Node& node) { return node.array([&s](const Node& move) { return read_knock(move, s); }); }},
       {"hand_rests",
        [&s](const Node& node) { return node.array([&s](const Node& element) { return read_rest(element, s); }); }},
       {"illegal_moves",
@@ -338,10 +422,18 @@ Result<Scenario> parse_scenario(const std::string& content) {
       {"camera", camera_keys(s, sweep_radius_px)},
       {"board", board_keys(s)},
       {"player", player_keys(s)},
+      {"objects",
+       [&s](const Node& node) { return node.array([&s](const Node& element) { return read_object(element, s); }); }},
       {"events",
        [&s](const Node& node) { return node.array([&s](const Node& element) { return read_event(element, s); }); }},
   });
   if (!read) return tl::make_unexpected(read.error());
+  if (s.objects.size() > 16) return failure(ErrorCode::bad_format, "\"objects\": 16 at most");
+  if (s.no_board && (s.objects.empty() || s.player_present)) {
+    return failure(ErrorCode::bad_format,
+                   "\"board\": without a board (\"present\": false) there must be \"objects\", and no player "
+                   "(\"player\": {\"present\": false})");
+  }
   // The angles of a sweep follow from the lens.
   s.path.sweep_rad_s *= s.fps / s.intrinsics.fx;
   s.path.sweep_radius_rad = sweep_radius_px / s.intrinsics.fx;

@@ -1,4 +1,5 @@
-// What happens on the stage, from a JSON file. stage/scenarios holds examples; an unknown key is answered with those there are.
+// What happens on the stage, from a JSON file. stage/scenarios holds examples; an unknown key is answered with those
+// there are.
 #pragma once
 
 #include <string>
@@ -31,6 +32,8 @@ struct Scenario {
   Intrinsics intrinsics{1, 720, 576, 610, 610, 359.5, 287.5, {}};
   BoardGeometry board;
   bool no_pieces = false;  // an empty board
+  bool no_board = false;   // objects alone
+  std::vector<ObjectPlan> objects;
   CameraPath path;
   SensorOptions sensor;
   Shutter shutter;

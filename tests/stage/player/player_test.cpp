@@ -125,6 +125,29 @@ TEST(Player, MovesTheWrongPieceWhenACaptureIsDue) {
   EXPECT_EQ(after.substr(25), std::string(25, 'e')) << "nobody has jumped: " << after;
 }
 
+TEST(Player, KnocksAPieceOverPutsItUpAndPlaysOn) {
+  PlayerOptions options;
+  options.knocks_over = {1};
+  World world = starting_world({});
+  Player player(options);
+  player.see(start_state(GamePhase::real_to_move, Side::dark));
+  int lying = 0;
+  for (int i = 0; i < 10 * 25; ++i) {
+    player.step(0.04, world);
+    const std::string now = occupancy_of(world);
+    if (world.hand.held_piece >= 0 || std::count(now.begin(), now.end(), 'b') == 20) continue;
+    ++lying;
+    EXPECT_EQ(std::count(now.begin(), now.end(), 'b'), 19);
+    EXPECT_EQ(now.substr(20), std::string(30, 'e')) << "before his move";
+  }
+  EXPECT_GT(lying, 15) << "for more than half a second";
+  EXPECT_TRUE(at_rest(world));
+  const std::string after = occupancy_of(world);
+  EXPECT_EQ(std::count(after.begin(), after.end(), 'b'), 20);
+  EXPECT_EQ(std::count(after.begin() + 20, after.begin() + 25, 'b'), 1) << "one man has moved";
+  for (const RealPiece& piece : world.pieces) EXPECT_EQ(piece.roll_rad, 0);
+}
+
 TEST(Player, ForgetsACapturedPieceForAWhile) {
   PlayerOptions options;
   options.forgets_s = 5;
