@@ -214,6 +214,12 @@ bool Player::play_illegally(const World& world) {
       if (!to || piece_on(world, *to) >= 0 || (mirror_ && mirror_->squares[static_cast<std::size_t>(*to - 1)] != 'e')) {
         continue;
       }
+      if (planned.kind == IllegalKind::too_far && mirror_) {
+        // Over one of the other side it would be a capture.
+        const auto over = square_of_cell({from.row + rows / 2, from.col + side / 2}, n);
+        const char between = over ? mirror_->squares[static_cast<std::size_t>(*over - 1)] : 'e';
+        if (between != 'e' && piece_on(world, *over) < 0) continue;
+      }
       if (!chosen.empty() && chosen.back().second == *to) continue;
       chosen.emplace_back(static_cast<int>(i), *to);
       break;

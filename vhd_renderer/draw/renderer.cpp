@@ -351,7 +351,8 @@ Drawing Renderer::draw(const View& view, const Lighting& lighting, std::span<con
   const cv::Rect box = options.box ? (*options.box & whole) : whole;
   const Eigen::Vector4f& b = options.background;
   Drawing drawing;
-  drawing.bgra = cv::Mat(s.height, s.width, CV_8UC4, cv::Scalar(b[0], b[1], b[2], b[3]) * 255);
+  drawing.bgra.create(s.height, s.width, CV_8UC4);
+  if (box != whole) drawing.bgra = cv::Scalar(b[0], b[1], b[2], b[3]) * 255;
   if (options.depth) {
     drawing.depth_m = cv::Mat(s.height, s.width, CV_32FC1, cv::Scalar(std::numeric_limits<float>::infinity()));
   }

@@ -110,6 +110,26 @@ TEST(Player, CapturesBecauseHeMust) {
   EXPECT_EQ(after.substr(25, 5).find('b') != std::string::npos, true) << after;
 }
 
+// 24 stands so that 19 or 20 would take it by a move of two rows.
+TEST(Player, AMoveTooFarIsNoCapture) {
+  PlayerOptions options;
+  options.illegal_moves = {{1, IllegalKind::too_far}};
+  World world = starting_world({});
+  Player player(options);
+  BoardState state = start_state(GamePhase::real_to_move, Side::dark);
+  state.squares[24 - 1] = 'w';
+  player.see(state);
+  wait(player, world, 3);
+  const std::string after = occupancy_of(world);
+  for (const PlayerMove& move : legal_moves("international", state.squares, Side::dark)) {
+    std::string legal = start_state(GamePhase::real_to_move, Side::dark).squares.substr(0, 20) + std::string(30, 'e');
+    legal[static_cast<std::size_t>(move.path.front() - 1)] = 'e';
+    legal[static_cast<std::size_t>(move.path.back() - 1)] = 'b';
+    EXPECT_NE(after, legal);
+  }
+  EXPECT_NE(after.substr(25, 5), "eeeee") << "two rows ahead: " << after;
+}
+
 TEST(Player, MovesTheWrongPieceWhenACaptureIsDue) {
   PlayerOptions options;
   options.illegal_moves = {{1, IllegalKind::wrong_piece}};
