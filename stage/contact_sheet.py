@@ -36,7 +36,7 @@ def main():
     parser.add_argument("--scenarios", default=os.path.join(HERE, "scenarios"))
     parser.add_argument("--out", default=os.path.join(HERE, "..", "docs", "pictures", "scenarios.jpg"))
     parser.add_argument("--programs", default=os.path.join(HERE, "..", "build", "dev", "bin"))
-    parser.add_argument("--columns", type=int, default=5)
+    parser.add_argument("--columns", type=int, default=6)
     options = parser.parse_args()
     names = sorted(f[:-5] for f in os.listdir(options.scenarios) if f.endswith(".json"))
     os.makedirs(os.path.dirname(os.path.abspath(options.out)), exist_ok=True)
