@@ -7,6 +7,7 @@ import csv
 import json
 import math
 import os
+import re
 import signal
 import socket
 import statistics
@@ -82,9 +83,19 @@ def last_frame(poses_file):
         return 0
 
 
-def watch(cast, tracker, poses_file, frames):
-    """Waits for the tracker to end, with a line of progress every few seconds."""
+def recorded_moves(pdn_file):
+    """How many moves of both players the record holds."""
+    try:
+        with open(pdn_file) as f:
+            return len(re.findall(r"\b\d+[-x]\d+", re.sub(r"\[.*?\]|\{.*?\}", "", f.read(), flags=re.S)))
+    except OSError:
+        return 0
+
+
+def watch(cast, tracker, out, options):
+    """Waits for the tracker to end, or for the moves that are wanted, with a line of progress every few seconds."""
     shown = 0.0
+    frames = options.frames
     started = time.monotonic()
     while tracker.poll() is None:
         time.sleep(0.2)
@@ -95,9 +106,13 @@ def watch(cast, tracker, poses_file, frames):
         now = time.monotonic()
         if now - shown > 5:
             shown = now
-            done = last_frame(poses_file)
+            done = last_frame(out("poses.csv"))
             total = f" of {frames}" if frames else ""
-            say(f"frame {done}{total}, {done / max(now - started, 1e-9):.1f} a second")
+            moves = recorded_moves(out("demo.pdn"))
+            say(f"frame {done}{total}, {moves} moves, {done / max(now - started, 1e-9):.1f} a second")
+            if options.moves and moves >= options.moves:
+                tracker.send_signal(signal.SIGTERM)
+                tracker.wait(60)
 
 
 def rotate(q, v):
@@ -132,13 +147,13 @@ def pose_error(poses_file, truth_file):
             if row["status"] == "lost":
                 lost += 1
                 continue
-            X, K = {"p": entry["p_CB"], "q": entry["q_CB"]}, entry["intrinsics"]
+            X, K, board = entry["X_CB"], entry["intrinsics"], entry["board"]
             p = [float(row[k]) for k in ("tx", "ty", "tz")]
             q = [float(row[k]) for k in ("qw", "qx", "qy", "qz")]
             mm.append(1000 * math.dist(p, X["p"]))
             dot = min(1.0, abs(sum(a * b for a, b in zip(q, X["q"]))))
             degrees.append(math.degrees(2 * math.acos(dot)))
-            half = entry["playing_surface_m"] / 2
+            half = board["squares"] * board["square_size_m"] / 2
             square = 0.0
             for cx, cy in ((-half, half), (half, half), (half, -half), (-half, -half)):
                 ends = []
@@ -177,10 +192,12 @@ def parse():
     parser.add_argument("--headless", action="store_true")
     parser.add_argument("--out", default="out")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--scenario", default="", help="of the stage, instead of a plain game")
+    parser.add_argument("--moves", type=int, default=0, help="end when so many have been recorded, both players' counted")
     options = parser.parse_args()
     if options.frames < 0:
         parser.error("--frames cannot be negative")
-    if not options.camera and not options.frames and options.headless:
+    if not options.camera and not options.frames and not options.moves and options.headless:
         options.frames = 4000
     if options.camera and is_film(options.camera) and not os.path.exists(options.camera):
         fail(f"there is no camera, film or folder '{options.camera}'")
@@ -198,7 +215,7 @@ def perform(options):
         camera = options.camera
         if not camera:
             stage_address = f"127.0.0.1:{free_port() if options.headless else 7403}"
-            scenario = os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenarios",
+            scenario = options.scenario or os.path.join(os.path.dirname(os.path.abspath(__file__)), "scenarios",
                                     "demo.json" if options.squares == 10 else "demo8.json")
             cast.start("stage", "serve", "--listen", stage_address, "--scenario", scenario, "--seed", options.seed,
                        "--truth", out("truth.jsonl"), *pace)
@@ -212,7 +229,7 @@ def perform(options):
                    out("renderer.json"), *web, *pace)
         if web:
             say("the mirror is at http://127.0.0.1:8080 (Ctrl-C ends)")
-        watch(cast, tracker, out("poses.csv"), options.frames)
+        watch(cast, tracker, out, options)
         for name, process in cast.members:
             if name == "vhd_renderer":
                 try:

@@ -31,19 +31,35 @@ double wander(double t_s, std::uint64_t seed, std::uint64_t channel) {
 
 }  // namespace
 
-Eigen::Isometry3d camera_at(const CameraPath& path, double t_s) {
+Eigen::Isometry3d camera_at_X_CR(const CameraPath& path, double t_s) {
   const double angle = path.orbit_rad * std::sin(kTwoPi * t_s / path.orbit_period_s);
-  const Eigen::Vector3d arm = path.eye_B - path.target_B;
-  Eigen::Vector3d eye = path.target_B + Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * arm;
+  Eigen::Vector3d start = path.eye_R;
+  if (path.dolly_to_R) {
+    start += (0.5 - 0.5 * std::cos(kTwoPi * t_s / path.dolly_period_s)) * (*path.dolly_to_R - path.eye_R);
+  }
+  const Eigen::Vector3d arm = start - path.target_R;
+  Eigen::Vector3d eye = path.target_R + Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * arm;
   Eigen::Vector3d turn = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
     const auto channel = static_cast<std::uint64_t>(axis);
     eye[axis] += path.shake_m * wander(t_s, path.seed, channel);
     turn[axis] = path.shake_rad * wander(t_s, path.seed, 3 + channel);
   }
-  Eigen::Isometry3d X_CB = look_at_X_CB(eye, path.target_B);
-  if (turn.norm() > 0) X_CB = Eigen::Isometry3d(Eigen::AngleAxisd(turn.norm(), turn.normalized())) * X_CB;
-  return X_CB;
+  if (path.sweep_rad_s > 0) {
+    const double way = path.sweep_rad_s * (t_s < 0 ? 0 : t_s < 1 ? t_s * t_s / 2 : t_s - 0.5);
+    turn += path.sweep_radius_rad *
+            Eigen::Vector3d(std::cos(way / path.sweep_radius_rad), std::sin(way / path.sweep_radius_rad), 0);
+  }
+  Eigen::Isometry3d X_CR = look_at_X_CB(eye, path.target_R);
+  if (turn.norm() > 0) X_CR = Eigen::Isometry3d(Eigen::AngleAxisd(turn.norm(), turn.normalized())) * X_CR;
+  return X_CR;
+}
+
+double zoom_at(const CameraPath& path, double t_s) {
+  const double range = std::log(path.zoom_high / path.zoom_low);
+  if (range <= 0) return 1;
+  const double start = std::acos(1 + 2 * std::log(path.zoom_low) / range);  // where the factor is 1
+  return path.zoom_low * std::exp(range * (0.5 - 0.5 * std::cos(start + kTwoPi * t_s / path.zoom_period_s)));
 }
 
 }  // namespace counterpart::stage

@@ -10,15 +10,25 @@
 
 namespace counterpart::stage {
 
+struct ObjectTruth {
+  std::string name;
+  Eigen::Isometry3d X_CO = Eigen::Isometry3d::Identity();
+  double edges_hidden = 0;  // see object_edges_hidden
+};
+
 // What was so at the middle of the exposure. Written for those who measure; nobody on the link gets it.
 struct Truth {
   FrameStamp stamp;
   View view;
-  std::string occupancy;  // of the real pieces, see occupancy_of
-  double playing_surface_m = 0;  // a side of the board's playing surface
-  double hand_share = 0;  // of the playing surface, hidden by the player's arm
-  double edges_hidden = 0;  // share of the outline's and the grid's length in the picture hidden by arm or pieces, or outside it
-  double motion_px = 0;   // how far the board's corners moved since the frame before, the mean of four
+  std::string occupancy;     // of the real pieces, see occupancy_of
+  bool holds_piece = false;  // in his hand: it stands nowhere
+  double hand_share = 0;     // of the playing surface, hidden by the player's arm
+  double edges_hidden =
+      0;  // share of the outline's and the grid's length in the picture hidden by arm or pieces, or outside it
+  double motion_px = 0;  // how far the board's corners moved since the frame before, the mean of four
+  BoardGeometry board;
+  bool board_present = true;
+  std::vector<ObjectTruth> objects;
 };
 
 struct Shot {
@@ -36,6 +46,9 @@ class Film {
   // Lets a frame's time pass (none before the first) and takes the picture.
   Shot next();
 
+  // Lets a frame's time pass without taking its picture.
+  void skip();
+
   // Where the player's arm is seen in the last picture: CV_8UC1, 255 = arm.
   cv::Mat arm_mask();
 
@@ -44,10 +57,18 @@ class Film {
 
  private:
   Film(const Scenario& scenario, std::unique_ptr<Room> room);
+  // What stands and happens in the room without the player.
+  void set_scene(World& world, double t_s) const;
+  View view_at(double t_s, const World& world) const;
+  // Lets time pass in the room up to t_s; time never runs backwards.
+  void pass_until(double t_s);
+  cv::Mat expose_frame(double t_s);
 
   Scenario scenario_;
   std::unique_ptr<Room> room_;
-  World world_;
+  World world_;  // at the middle of the last exposure
+  World now_;    // where the last partial exposure left it
+  double now_s_ = 0;
   Player player_;
   FrameId next_frame_ = 0;
   View view_;

@@ -11,6 +11,11 @@ namespace {
 // Does the capsule come between the two points? Steps along the segment, nearer than the capsule's surface each time.
 bool blocks(const Capsule& capsule, const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
   const Eigen::Vector3f way = to - from;
+  // Most lines of sight pass by a sphere round the capsule.
+  const Eigen::Vector3f middle = (capsule.a_m + capsule.b_m) / 2;
+  const float reach = (capsule.b_m - capsule.a_m).norm() / 2 + std::max(capsule.radius_a_m, capsule.radius_b_m) + 1e-3f;
+  const float nearest = std::clamp((middle - from).dot(way) / way.squaredNorm(), 0.f, 1.f);
+  if ((from + nearest * way - middle).squaredNorm() > reach * reach) return false;
   const float length = way.norm();
   float gone = 0;
   while (gone < length) {
@@ -37,23 +42,84 @@ bool behind_piece(const World& world, const Eigen::Vector3d& eye, const Eigen::V
   return false;
 }
 
+bool behind_sheet(const Sheet& sheet, const Eigen::Vector3d& eye, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d from = sheet.X_BS.inverse() * eye;
+  const Eigen::Vector3d to = sheet.X_BS.inverse() * point;
+  if (from.z() * to.z() >= 0) return false;  // both on one side
+  const Eigen::Vector3d at = from + (to - from) * (from.z() / (from.z() - to.z()));
+  return std::abs(at.x()) < sheet.size_x_m / 2 && std::abs(at.y()) < sheet.size_y_m / 2;
+}
+
+bool behind_object(const World& world, const RoomObject& object, const Eigen::Vector3d& eye,
+                   const Eigen::Vector3d& point) {
+  const Eigen::Isometry3d X_OB = object.X_RO.inverse() * world.X_RB;
+  return comes_between(polygon_model(object.kind, object.size_m), X_OB * eye, X_OB * point);
+}
+
+bool behind_table(const World& world, const Eigen::Vector3d& eye, const Eigen::Vector3d& point) {
+  PolygonModel table;
+  table.blocks = {{{0, (kTableNearY_m + kTableFarY_m) / 2, -world.board.thickness_m - kTableThickness_m / 2},
+                   {kTableX_m, kTableNearY_m - kTableFarY_m, kTableThickness_m}}};
+  return comes_between(table, world.X_RB * eye, world.X_RB * point);
+}
+
 bool outside(const View& view, const Eigen::Vector3d& point) {
   if ((view.X_CB * point).z() <= kNear_m) return true;
   const Eigen::Vector2d at = project(view, point);
   return !(at.x() >= 0 && at.y() >= 0 && at.x() <= view.intrinsics.width - 1 && at.y() <= view.intrinsics.height - 1);
 }
 
+std::vector<Capsule> arm_in(const World& world) {
+  if (!world.player_present) return {};
+  return arm_capsules(arm_for(world.hand.pinch_B), static_cast<float>(world.board.piece_radius_m));
+}
+
+bool behind_arm_or_sheet(const World& world, const std::vector<Capsule>& arm, const Eigen::Vector3d& eye,
+                         const Eigen::Vector3d& point) {
+  return (world.sheet && behind_sheet(*world.sheet, eye, point)) ||
+         std::any_of(arm.begin(), arm.end(),
+                     [&](const Capsule& c) { return blocks(c, eye.cast<float>(), point.cast<float>()); });
+}
+
 }  // namespace
 
-Hidden hidden_shares(const World& world, const View& view) {
-  std::vector<Capsule> arm;
-  if (world.player_present) {
-    arm = arm_capsules(arm_for(world.hand.pinch_B), static_cast<float>(world.board.piece_radius_m));
-  }
+double object_edges_hidden(const World& world, std::size_t object, const View& view) {
+  constexpr int kSamples = 12;
+  const RoomObject& it = world.objects[object];
+  const PolygonModel model = polygon_model(it.kind, it.size_m);
+  const Eigen::Isometry3d X_BO = world.X_RB.inverse() * it.X_RO;
   const Eigen::Vector3d eye = camera_position_B(view);
-  const auto behind_arm = [&](const Eigen::Vector3d& point) {
-    return std::any_of(arm.begin(), arm.end(),
-                       [&](const Capsule& c) { return blocks(c, eye.cast<float>(), point.cast<float>()); });
+  const Eigen::Vector3d eye_O = X_BO.inverse() * eye;
+  const std::vector<Capsule> arm = arm_in(world);
+  double seen_m = 0, all_m = 0;
+  for (const std::vector<int>& face : model.faces) {
+    const auto at = [&](std::size_t i) { return model.vertices_O[static_cast<std::size_t>(face[i % face.size()])]; };
+    if ((at(1) - at(0)).cross(at(2) - at(0)).dot(eye_O - at(0)) <= 0) continue;
+    for (std::size_t i = 0; i < face.size(); ++i) {
+      const Eigen::Vector3d way = at(i + 1) - at(i);
+      for (int k = 0; k < kSamples; ++k) {
+        const Eigen::Vector3d point_O = at(i) + (k + 0.5) / kSamples * way;
+        const Eigen::Vector3d point = X_BO * point_O;
+        bool unseen = outside(view, point) || comes_between(model, eye_O, point_O) || behind_table(world, eye, point) ||
+                      behind_arm_or_sheet(world, arm, eye, point);
+        for (std::size_t other = 0; other < world.objects.size() && !unseen; ++other) {
+          unseen = other != object && behind_object(world, world.objects[other], eye, point);
+        }
+        all_m += way.norm();
+        seen_m += unseen ? 0 : way.norm();
+      }
+    }
+  }
+  return all_m > 0 ? 1 - seen_m / all_m : 1;
+}
+
+Hidden hidden_shares(const World& world, const View& view) {
+  const std::vector<Capsule> arm = arm_in(world);
+  const Eigen::Vector3d eye = camera_position_B(view);
+  const auto behind_arm = [&](const Eigen::Vector3d& point) { return behind_arm_or_sheet(world, arm, eye, point); };
+  const auto behind_objects = [&](const Eigen::Vector3d& point) {
+    return std::any_of(world.objects.begin(), world.objects.end(),
+                       [&](const RoomObject& object) { return behind_object(world, object, eye, point); });
   };
   const int n = world.board.squares;
   const double size = world.board.square_size_m;
@@ -72,7 +138,8 @@ Hidden hidden_shares(const World& world, const View& view) {
       const double s = (i + 0.5) * 2 * half / along - half;
       const double at = line * size - half;
       for (const Eigen::Vector3d& point : {Eigen::Vector3d(s, at, 0), Eigen::Vector3d(at, s, 0)}) {
-        const bool unseen = outside(view, point) || behind_piece(world, eye, point) || behind_arm(point);
+        const bool unseen =
+            outside(view, point) || behind_piece(world, eye, point) || behind_arm(point) || behind_objects(point);
         hidden.edges += unseen ? 1.0 / (2 * along * (n + 1)) : 0;
       }
     }

@@ -49,6 +49,7 @@ double Player::random(double from, double to) {
 
 void Player::step(double dt_s, World& world) {
   if (!world.player_present) return;
+  time_s_ += dt_s;
   if (gestures_.idle()) {
     waited_s_ += dt_s;
     hand_after_ = world.hand.pinch_B;
@@ -58,7 +59,22 @@ void Player::step(double dt_s, World& world) {
   gestures_.step(dt_s * options_.speed, world);
 }
 
+bool Player::rest_hand(const World& world) {
+  if (rests_made_ >= options_.rests.size() || options_.rests[rests_made_].at_s > time_s_) return false;
+  const HandRest& rest = options_.rests[rests_made_++];
+  Stroke stroke;
+  stroke.to_B = {rest.place_m.x(), rest.place_m.y(), grip_height_m(world.board) + world.board.piece_height_m};
+  stroke.duration_s = kReach_s + kFar_s_m * (stroke.to_B - hand_after_).norm();
+  stroke.arc_m = 0.05;
+  gestures_.add(stroke);
+  hand_after_ = stroke.to_B;
+  pause(world, rest.for_s * options_.speed);
+  withdraw(world);
+  return true;
+}
+
 void Player::decide(World& world) {
+  if (rest_hand(world)) return;
   if (options_.practise) return practise(world);
   if (!mirror_) return;
   const BoardState& state = *mirror_;
@@ -71,8 +87,11 @@ void Player::decide(World& world) {
       for (const int square : state.to_remove) {
         const int piece = piece_on(world, square);
         if (piece < 0) continue;
+        if (gestures_.idle() && taken_off_ > 0 && waited_s_ < options_.forgets_s) return;
         if (gestures_.idle()) pause(world, random(0.2, 0.5));
         take_off(world, piece);
+        ++taken_off_;
+        if (options_.forgets_s > 0) break;
       }
       if (!gestures_.idle()) withdraw(world);
       return;
@@ -106,11 +125,73 @@ void Player::play(const BoardState& state, World& world) {
   const PlayerMove& move = moves[std::min(chosen, moves.size() - 1)];
   const int piece = piece_on(world, move.path.front());
   if (piece < 0) return;
+  taken_off_ = 0;
   pause(world, random(0.2, 0.7));
+  if (knocks_made_ < options_.knocks_over.size() && options_.knocks_over[knocks_made_] <= moves_made_ + 1) {
+    ++knocks_made_;
+    knock_over(world, piece);
+  }
   reach_for(world, piece);
   carry(world, piece, move.path);
   withdraw(world);
   ++moves_made_;
+}
+
+// On the way to one piece the hand brushes the next, which tumbles half a square to the side, where nothing ever
+// stands; he puts it up again.
+void Player::knock_over(const World& world, int beside) {
+  int victim = -1;
+  double nearest = 1e9;
+  const Eigen::Vector3d& goal = world.pieces[static_cast<std::size_t>(beside)].p_B;
+  for (std::size_t i = 0; i < world.pieces.size(); ++i) {
+    if (world.pieces[i].square == 0 || world.pieces[i].king || static_cast<int>(i) == beside) continue;
+    const double distance = (world.pieces[i].p_B - goal).norm();
+    if (distance < nearest) {
+      nearest = distance;
+      victim = static_cast<int>(i);
+    }
+  }
+  if (victim < 0) return;
+  const RealPiece& piece = world.pieces[static_cast<std::size_t>(victim)];
+  const Eigen::Vector3d grip(0, 0, grip_height_m(world.board));
+  const double aside = (piece.p_B.x() > 0 ? -0.6 : 0.6) * world.board.square_size_m;
+
+  Stroke stroke;
+  stroke.to_B = piece.p_B + grip;
+  stroke.duration_s = kReach_s + kFar_s_m * (stroke.to_B - hand_after_).norm();
+  stroke.arc_m = 0.03;
+  gestures_.add(stroke);
+  stroke.end = StrokeEnd::knock;
+  stroke.piece = victim;
+  stroke.foot_B = piece.p_B + Eigen::Vector3d(aside, 0, 0);
+  stroke.to_B += Eigen::Vector3d(0.3 * aside, 0, 0.01);
+  stroke.duration_s = 0.22;
+  stroke.arc_m = 0;
+  gestures_.add(stroke);
+  hand_after_ = stroke.to_B;
+  pause(world, random(0.5, 0.9));
+  stroke.end = StrokeEnd::take;
+  stroke.to_B = stroke.foot_B + grip;
+  stroke.duration_s = kReach_s;
+  gestures_.add(stroke);
+  hand_after_ = stroke.to_B;
+  pause(world, kFingers_s);
+  carry(world, victim, {piece.square, piece.square});
+}
+
+std::vector<std::pair<int, int>> Player::wrong_piece(const World& world) const {
+  const std::vector<PlayerMove> legal = legal_moves(mirror_->rules, mirror_->squares, mirror_->turn);
+  if (legal.empty() || legal.front().captured.empty()) return {};
+  const int n = world.board.squares;
+  for (std::size_t i = 0; i < world.pieces.size(); ++i) {
+    if (world.pieces[i].square == 0 || world.pieces[i].king) continue;
+    const Cell from = cell_of_square(world.pieces[i].square, n);
+    for (const int side : {-1, 1}) {
+      const auto to = square_of_cell({from.row + 1, from.col + side}, n);
+      if (to && mirror_->squares[static_cast<std::size_t>(*to - 1)] == 'e') return {{static_cast<int>(i), *to}};
+    }
+  }
+  return {};
 }
 
 bool Player::play_illegally(const World& world) {
@@ -121,14 +202,23 @@ bool Player::play_illegally(const World& world) {
   const bool two = planned.kind == IllegalKind::two_pieces;
   const int rows = planned.kind == IllegalKind::backwards ? -1 : planned.kind == IllegalKind::too_far ? 2 : two ? 1 : 0;
   const int cols = planned.kind == IllegalKind::backwards || two ? 1 : 2;
-  std::vector<std::pair<int, int>> chosen;                                                  // piece, square
-  for (std::size_t i = world.pieces.size(); i-- > 0 && chosen.size() < (two ? 2u : 1u);) {  // from the front row
+  std::vector<std::pair<int, int>> chosen;  // piece, square
+  if (planned.kind == IllegalKind::wrong_piece) chosen = wrong_piece(world);
+  const bool by_steps = planned.kind != IllegalKind::wrong_piece;
+  for (std::size_t i = world.pieces.size();
+       by_steps && i-- > 0 && chosen.size() < (two ? 2u : 1u);) {  // from the front row
     if (world.pieces[i].square == 0 || world.pieces[i].king) continue;
     const Cell from = cell_of_square(world.pieces[i].square, n);
     for (const int side : {-cols, cols}) {
       const auto to = square_of_cell({from.row + rows, from.col + side}, n);
       if (!to || piece_on(world, *to) >= 0 || (mirror_ && mirror_->squares[static_cast<std::size_t>(*to - 1)] != 'e')) {
         continue;
+      }
+      if (planned.kind == IllegalKind::too_far && mirror_) {
+        // Over one of the other side it would be a capture.
+        const auto over = square_of_cell({from.row + rows / 2, from.col + side / 2}, n);
+        const char between = over ? mirror_->squares[static_cast<std::size_t>(*over - 1)] : 'e';
+        if (between != 'e' && piece_on(world, *over) < 0) continue;
       }
       if (!chosen.empty() && chosen.back().second == *to) continue;
       chosen.emplace_back(static_cast<int>(i), *to);

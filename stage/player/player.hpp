@@ -19,6 +19,7 @@ enum class IllegalKind : std::uint8_t {
   sideways = 2,     // a man two columns along its row
   too_far = 3,      // a man two rows ahead without a capture
   two_pieces = 4,   // two men moved in one turn
+  wrong_piece = 5,  // a move without capture where one is due
 };
 
 struct IllegalMove {
@@ -26,11 +27,21 @@ struct IllegalMove {
   IllegalKind kind = IllegalKind::backwards;
 };
 
+// The hand lies on the board for a while.
+struct HandRest {
+  double at_s = 0;
+  double for_s = 20;
+  Eigen::Vector2d place_m{0, 0};  // in B
+};
+
 struct PlayerOptions {
   std::uint64_t seed = 1;
   double speed = 1;       // 2: twice as fast
   bool practise = false;  // no game: moves his pieces about by himself
   std::vector<IllegalMove> illegal_moves;
+  std::vector<HandRest> rests;   // in order of time
+  std::vector<int> knocks_over;  // before these of his legal moves, counted from 1, he knocks a piece over; rising
+  double forgets_s = 0;          // takes off only one captured piece at once and leaves the next standing for so long
 };
 
 class Player {
@@ -47,6 +58,9 @@ class Player {
   void decide(World& world);
   void play(const BoardState& state, World& world);
   bool play_illegally(const World& world);
+  std::vector<std::pair<int, int>> wrong_piece(const World& world) const;
+  bool rest_hand(const World& world);
+  void knock_over(const World& world, int beside);
   void practise(World& world);
   void make_board_show(const std::vector<int>& wanted, const World& world);
   void crown_kings(const BoardState& state, const World& world);
@@ -66,6 +80,10 @@ class Player {
   int moves_made_ = 0;
   int places_used_ = 0;
   std::size_t illegal_made_ = 0;
+  std::size_t rests_made_ = 0;
+  std::size_t knocks_made_ = 0;
+  int taken_off_ = 0;
+  double time_s_ = 0;
 };
 
 }  // namespace counterpart::stage

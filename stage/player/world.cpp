@@ -5,6 +5,15 @@
 
 namespace counterpart::stage {
 
+void move_board(World& world, const Eigen::Isometry3d& X_RB) {
+  const Eigen::Isometry3d X_new_old = X_RB.inverse() * world.X_RB;
+  for (std::size_t i = 0; i < world.pieces.size(); ++i) {
+    RealPiece& piece = world.pieces[i];
+    if (piece.square == 0 && static_cast<int>(i) != world.hand.held_piece) piece.p_B = X_new_old * piece.p_B;
+  }
+  world.X_RB = X_RB;
+}
+
 int piece_on(const World& world, int square) {
   const auto at = std::find_if(world.pieces.begin(), world.pieces.end(),
                                [&](const RealPiece& piece) { return piece.square == square; });

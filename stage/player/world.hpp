@@ -1,12 +1,14 @@
 // What stands and moves in the simulated room at one moment. Frame B, metres.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "protocol/vocabulary/board_geometry.hpp"
+#include "stage/room/room_object.hpp"
 
 namespace counterpart::stage {
 
@@ -15,6 +17,7 @@ struct RealPiece {
   bool king = false;
   Eigen::Vector3d p_B{0, 0, 0};  // centre of its foot
   double turn_rad = 0;           // how it happens to be turned round its axis
+  double roll_rad = 0;           // of a piece that is knocked over: half a turn is upside down
 };
 
 struct HandState {
@@ -22,12 +25,28 @@ struct HandState {
   int held_piece = -1;               // index into World::pieces
 };
 
+// A sheet of paper that somebody holds over the board.
+struct Sheet {
+  Eigen::Isometry3d X_BS = Eigen::Isometry3d::Identity();  // S: origin at its middle, z out of it
+  double size_x_m = 0.5, size_y_m = 0.5;
+};
+
+// Frame R is the room's: that of the board where it first lay.
 struct World {
   BoardGeometry board;
+  Eigen::Isometry3d X_RB = Eigen::Isometry3d::Identity();  // upright: the board lies on the table
+  double light = 1;                                        // 1: a bright day, 0: dark
+  std::optional<Eigen::Vector3d> cup_R;                    // a coffee cup's foot
+  std::optional<Sheet> sheet;
   std::vector<RealPiece> pieces;
+  std::vector<RoomObject> objects;
+  bool board_present = true;
   bool player_present = true;
   HandState hand;
 };
+
+// Moves the board with what stands on it; what lies beside it stays where it is in the room.
+void move_board(World& world, const Eigen::Isometry3d& X_RB);
 
 // The piece that stands on this square, or -1.
 int piece_on(const World& world, int square);

@@ -1,12 +1,11 @@
 #include "stage/programs/render.hpp"
 
-#include <unistd.h>
-
 #include <chrono>
 #include <cstdio>
 
 #include <opencv2/imgcodecs.hpp>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include "stage/film/sequence.hpp"
 
@@ -37,6 +36,7 @@ Result<void> run_render(const RenderOptions& options, const std::atomic<bool>& i
   using Clock = std::chrono::steady_clock;
   Clock::duration drawing{};
   int done = 0;
+  for (int i = 0; i < options.from && !interrupted; ++i) film->skip();
   while (done < frames && !interrupted) {
     const auto start = Clock::now();
     const Shot shot = film->next();
@@ -44,7 +44,7 @@ Result<void> run_render(const RenderOptions& options, const std::atomic<bool>& i
     if (const Result<void> written = writer->write(shot); !written) return written;
     if (options.masks) {
       char name[32];
-      std::snprintf(name, sizeof name, "/mask_%05d.png", done);
+      std::snprintf(name, sizeof name, "/mask_%05d.png", options.from + done);
       if (!cv::imwrite(options.out + name, film->arm_mask())) {
         return failure(ErrorCode::io, "Cannot write " + options.out + name + ".");
       }

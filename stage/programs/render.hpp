@@ -15,6 +15,7 @@ struct RenderOptions {
   std::string out;
   std::optional<std::uint64_t> seed;
   std::optional<int> frames;
+  int from = 0;  // first frame to draw
   bool masks = false;
 };
 

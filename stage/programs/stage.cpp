@@ -43,6 +43,8 @@ int main(int argc, char** argv) {
   render_command->add_option("--out", render.out, "Folder to make")->required();
   render_command->add_option("--seed", render.seed, "Instead of the scenario's");
   render_command->add_option("--frames", render.frames, "Instead of the scenario's")->check(CLI::PositiveNumber);
+  render_command->add_option("--from", render.from, "Pass over so many frames first, without drawing them")
+      ->check(CLI::NonNegativeNumber);
   render_command->add_flag("--masks", render.masks, "Also mask_%05d.png: where the player's arm is seen");
 
   ServeOptions serve;

@@ -6,9 +6,7 @@
 namespace counterpart::stage {
 namespace {
 
-const Eigen::Vector3d kPinchInHand{0.131, 0.020, -0.052};
-constexpr float kSleeveNear_m = 0.052f;
-constexpr float kSleeveFar_m = 0.039f;
+const Eigen::Vector3d kPinchInHand{0.147, 0.010, -0.050};
 
 // z along a direction, x as far up as that allows.
 Eigen::Isometry3d along_z(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
@@ -37,7 +35,7 @@ ArmPose arm_for(const Eigen::Vector3d& pinch_B) {
   const double yaw = std::atan2(ahead.y(), ahead.x());
   ArmPose pose;
   pose.X_BHand.linear() =
-      (Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(0.42, Eigen::Vector3d::UnitY()))
+      (Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(0.32, Eigen::Vector3d::UnitY()))
           .toRotationMatrix();
   pose.X_BHand.translation() = pinch_B - pose.X_BHand.linear() * kPinchInHand;
   const Eigen::Vector3d wrist = pose.X_BHand.translation();
@@ -58,8 +56,8 @@ ArmPose arm_for(const Eigen::Vector3d& pinch_B) {
   return pose;
 }
 
+// Lengths are those of a grown man's hand: 19 cm, 8.5 cm wide at the knuckles.
 std::vector<Capsule> hand_capsules(float piece_radius_m) {
-  const float open = piece_radius_m - 0.012f;  // the tips part along x for larger pieces
   const auto at = [](float x, float y, float z) { return Eigen::Vector3f(x, y, z); };
   std::vector<Capsule> hand;
   const auto chain = [&](const std::vector<Eigen::Vector3f>& joints, float first, float last) {
@@ -70,27 +68,39 @@ std::vector<Capsule> hand_capsules(float piece_radius_m) {
       hand.push_back({joints[i], joints[i + 1], ra, rb});
     }
   };
-  chain({at(-0.05f, 0, -0.002f), at(0.012f, 0, 0)}, 0.025f, 0.024f);
-  chain({at(0.012f, 0.012f, 0), at(0.085f, 0.027f, 0)}, 0.017f, 0.0125f);
-  chain({at(0.012f, 0.004f, 0.001f), at(0.088f, 0.009f, 0.003f)}, 0.017f, 0.0125f);
-  chain({at(0.012f, -0.005f, 0), at(0.084f, -0.010f, 0.001f)}, 0.017f, 0.012f);
-  chain({at(0.012f, -0.012f, -0.002f), at(0.077f, -0.027f, -0.003f)}, 0.016f, 0.0115f);
-  chain({at(0.085f, 0.027f, 0), at(0.124f + open, 0.026f, -0.010f), at(0.142f + open, 0.018f, -0.032f),
-         at(0.141f + open, 0.013f, -0.052f)},
-        0.0105f, 0.0068f);
-  chain({at(0.088f, 0.009f, 0.003f), at(0.130f + open, 0.007f, -0.006f), at(0.150f + open, 0.003f, -0.030f),
-         at(0.146f + open, 0.000f, -0.052f)},
-        0.0105f, 0.0068f);
-  chain({at(0.084f, -0.010f, 0.001f), at(0.118f, -0.014f, -0.012f), at(0.127f, -0.015f, -0.036f),
-         at(0.113f, -0.014f, -0.048f)},
-        0.010f, 0.0066f);
-  chain({at(0.077f, -0.027f, -0.003f), at(0.103f, -0.032f, -0.014f), at(0.108f, -0.032f, -0.033f),
-         at(0.096f, -0.030f, -0.043f)},
-        0.009f, 0.006f);
-  chain({at(0.020f, 0.020f, -0.010f), at(0.056f, 0.047f, -0.022f), at(0.090f - open, 0.045f, -0.036f),
-         at(0.115f - open, 0.032f, -0.053f)},
-        0.014f, 0.0085f);
+  const auto pinch = kPinchInHand.cast<float>();
+  const float beyond =
+      pinch.x() + piece_radius_m + 0.004f;  // fingers on the far side of the piece, the thumb on the near
+  const float before = pinch.x() - piece_radius_m - 0.005f;
+  // Palm.
+  chain({at(-0.004f, 0.009f, 0), at(0.016f, 0.012f, 0)}, 0.021f, 0.020f);
+  chain({at(-0.004f, -0.009f, 0), at(0.016f, -0.010f, 0)}, 0.021f, 0.020f);
+  chain({at(0.012f, 0.015f, 0), at(0.088f, 0.029f, 0)}, 0.0165f, 0.0118f);
+  chain({at(0.012f, 0.005f, 0.001f), at(0.092f, 0.009f, 0.003f)}, 0.0165f, 0.0120f);
+  chain({at(0.012f, -0.005f, 0), at(0.087f, -0.011f, 0.001f)}, 0.0165f, 0.0115f);
+  chain({at(0.012f, -0.014f, -0.002f), at(0.079f, -0.030f, -0.003f)}, 0.0155f, 0.0108f);
+  // Index, middle, ring, little finger, thumb.
+  chain({at(0.088f, 0.029f, 0), at(0.128f, 0.033f, 0.009f), at(0.153f, 0.027f, -0.014f), at(beyond, 0.018f, -0.047f)},
+        0.0098f, 0.0066f);
+  chain({at(0.092f, 0.009f, 0.003f), at(0.135f, 0.009f, 0.012f), at(0.162f, 0.005f, -0.013f),
+         at(beyond + 0.002f, 0.000f, -0.047f)},
+        0.0100f, 0.0067f);
+  chain({at(0.087f, -0.011f, 0.001f), at(0.128f, -0.017f, 0.007f), at(0.150f, -0.022f, -0.016f),
+         at(0.147f, -0.024f, -0.040f)},
+        0.0094f, 0.0064f);
+  chain({at(0.079f, -0.030f, -0.003f), at(0.110f, -0.042f, 0.002f), at(0.126f, -0.048f, -0.014f),
+         at(0.126f, -0.050f, -0.034f)},
+        0.0084f, 0.0057f);
+  chain({at(0.020f, 0.022f, -0.010f), at(0.060f, 0.050f, -0.024f), at(0.096f, 0.048f, -0.036f),
+         at(before, 0.016f, -0.049f)},
+        0.0140f, 0.0078f);
   return hand;
+}
+
+std::vector<Capsule> wrist_capsules() {
+  const auto wrist = static_cast<float>(kForearm_m);
+  return {{{0, 0.006f, wrist - 0.10f}, {0, 0.007f, wrist}, 0.029f, 0.0205f},
+          {{0, -0.006f, wrist - 0.10f}, {0, -0.007f, wrist}, 0.029f, 0.0205f}};
 }
 
 MeshData sleeve_mesh(float length_m, float radius_near_m, float radius_far_m) {
@@ -133,7 +143,8 @@ std::vector<Capsule> arm_capsules(const ArmPose& pose, float piece_radius_m) {
   std::vector<Capsule> result;
   const Eigen::Isometry3f X_BHand = pose.X_BHand.cast<float>();
   for (const Capsule& capsule : hand_capsules(piece_radius_m)) result.push_back(moved(capsule, X_BHand));
-  const Eigen::Vector3f tip(0, 0, static_cast<float>(kForearm_m));
+  for (const Capsule& capsule : wrist_capsules()) result.push_back(moved(capsule, pose.X_BForearm.cast<float>()));
+  const Eigen::Vector3f tip(0, 0, static_cast<float>(kSleeve_m));
   result.push_back(moved({{0, 0, 0}, tip, kSleeveNear_m, kSleeveFar_m}, pose.X_BForearm.cast<float>()));
   return result;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include <opencv2/core/mat.hpp>
 
@@ -15,9 +16,10 @@ struct RoomOptions {
   int width = 720;
   int height = 576;
   BoardGeometry board;
-  Eigen::Vector3f light_direction_B{-0.45f, 0.25f, 0.85f};
-  float light = 1.0f;    // 1: a bright day; 0: dark
-  std::uint64_t seed = 1;  // of the grain of the wood
+  Eigen::Vector3f light_direction_R{-0.45f, 0.25f, 0.85f};
+  std::vector<ObjectPlan> objects;  // those that a world may hold, in its order
+  bool fine = false;                // cuts flat things finer, for a lens that bends lines
+  std::uint64_t seed = 1;           // of the grain of the wood
 };
 
 class Room {
@@ -25,8 +27,8 @@ class Room {
   [[nodiscard]] static Result<std::unique_ptr<Room>> furnish(const RoomOptions& options);
   ~Room();
 
-  // A clean picture without noise or blur, CV_8UC3.
-  cv::Mat picture(const World& world, const View& view);
+  // A clean picture without noise or blur, CV_8UC3. Only the box of it is drawn, if one is given.
+  cv::Mat picture(const World& world, const View& view, const std::optional<cv::Rect>& box = {});
 
   // CV_8UC1: 255 where the player's arm is seen.
   cv::Mat arm_mask(const World& world, const View& view);

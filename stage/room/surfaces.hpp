@@ -5,12 +5,10 @@
 
 namespace counterpart::stage {
 
-// parameters: squares a side, square size in metres, 1 if the dark squares are played on. Squares and rim are computed,
-// not painted, so their edges lie exactly where the truth says at every distance.
+// Shade::level. parameters: squares a side, square size in metres, 0.5 if the dark squares are played on, else -0.5.
+// Squares and rim are computed, not painted, so their edges lie exactly where the truth says at every distance; the
+// texture gives the grain.
 std::string board_surface();
-std::string table_surface();
-std::string floor_surface();
-std::string wall_surface();
 std::string wooden_piece_surface();
 std::string skin_surface();
 

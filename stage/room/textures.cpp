@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
@@ -46,6 +47,39 @@ cv::Mat wood(int width, int height, const Eigen::Vector3f& light, const Eigen::V
   return rgb;
 }
 
+// Boards laid side by side along u.
+cv::Mat planks(int width, int height, int count, const Eigen::Vector3f& light, const Eigen::Vector3f& dark,
+               std::uint64_t seed) {
+  cv::RNG random(seed + 1);
+  cv::Mat rgb(height, width, CV_8UC3);
+  for (int plank = 0; plank < count; ++plank) {
+    const int top = plank * height / count;
+    const int tall = (plank + 1) * height / count - top;
+    cv::Mat one = wood(width, tall, light, dark, random) * random.uniform(0.82, 1.06);
+    cv::line(one, {0, 0}, {width, 0}, cv::Scalar(dark.x(), dark.y(), dark.z()) * 0.45, std::max(1, tall / 48));
+    const int joint = random.uniform(0, width);
+    cv::line(one, {joint, 0}, {joint, tall}, cv::Scalar(dark.x(), dark.y(), dark.z()) * 0.5, 1);
+    one.copyTo(rgb(cv::Rect(0, top, width, tall)));
+  }
+  return rgb;
+}
+
+double smoothstep(double from, double to, double x) {
+  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+// Multiplies the light at (u, v) in 0..1 by a factor; the picture's numbers are square roots of light.
+void shade(cv::Mat& rgb, const std::function<double(double, double)>& light_at) {
+  for (int y = 0; y < rgb.rows; ++y) {
+    for (int x = 0; x < rgb.cols; ++x) {
+      const double factor = std::sqrt(light_at((x + 0.5) / rgb.cols, (y + 0.5) / rgb.rows));
+      cv::Vec3b& pixel = rgb.at<cv::Vec3b>(y, x);
+      for (int c = 0; c < 3; ++c) pixel[c] = cv::saturate_cast<std::uint8_t>(pixel[c] * factor);
+    }
+  }
+}
+
 void rectangle(cv::Mat& rgb, double x0, double y0, double x1, double y1, const cv::Scalar& colour) {
   // Shares of the picture, so that its size does not matter.
   cv::rectangle(rgb, cv::Point(static_cast<int>(x0 * rgb.cols), static_cast<int>(y0 * rgb.rows)),
@@ -71,26 +105,61 @@ void books(cv::Mat& rgb, double x0, double y0, double x1, double y1, cv::RNG& ra
 
 }  // namespace
 
+Texture board_grain_texture(int size, int squares, double rim_share, std::uint64_t seed) {
+  cv::RNG random(seed + 11);
+  const cv::Mat grain = wood(1024, 1024, {236, 236, 236}, {170, 170, 170}, random);
+  cv::Mat rgb(size, size, CV_8UC3);
+  std::vector<int> shift(static_cast<std::size_t>(squares * squares));
+  for (int& value : shift) value = random.uniform(0, 1 << 20);
+  for (int y = 0; y < size; ++y) {
+    for (int x = 0; x < size; ++x) {
+      const auto cell = [&](int at) {
+        const double share = (2 * (at + 0.5) / size - 1) / (1 - rim_share);
+        return std::clamp(static_cast<int>(std::floor((share + 1) / 2 * squares)), 0, squares - 1);
+      };
+      const int pick = shift[static_cast<std::size_t>(cell(y) * squares + cell(x))];
+      const auto look = [&](int u, int v) { return grain.at<cv::Vec3b>(v & 1023, u & 1023)[0]; };
+      const double tone = 0.94 + 0.12 * (pick % 97) / 96.0;  // of the encoded colour
+      const bool upright = std::abs(2 * x - size) > std::abs(2 * y - size);
+      rgb.at<cv::Vec3b>(y, x) = {cv::saturate_cast<std::uint8_t>(tone * look(y + pick, 2 * x + pick / 7)),
+                                 cv::saturate_cast<std::uint8_t>(tone * look(x + pick, 2 * y + pick / 7)),
+                                 look(upright ? y : x, 2 * (upright ? x : y))};
+    }
+  }
+  return to_texture(rgb);
+}
+
+Texture table_texture(int width, int height, std::uint64_t seed) {
+  cv::Mat rgb = planks(width, height, 5, {196, 158, 112}, {150, 108, 68}, seed);
+  shade(rgb, [](double u, double v) {
+    return 0.95 - 0.25 * (std::pow(1.3 * (u - 0.5), 2) + std::pow(0.94 * (v - 0.5), 2));
+  });
+  return to_texture(rgb);
+}
+
+Texture floor_texture(int width, int height, std::uint64_t seed, const std::vector<FloorShade>& shades) {
+  const cv::Mat parquet = planks(width / 2, height / 2, 16, {150, 112, 78}, {112, 78, 50}, seed);
+  cv::Mat rgb;
+  cv::repeat(parquet, 2, 2, rgb);
+  shade(rgb, [&](double u, double v) {
+    const double x = 7 * (u - 0.5);
+    const double y = 5 * (0.5 - v);
+    const double sheen = std::exp(-0.9 * std::abs(x - 1)) * smoothstep(1.5, -2.5, y);
+    const double clear_of_table = smoothstep(0.4, 1.1, std::hypot(0.9 * x, 1.2 * (y + 0.15)));
+    double light = (0.40 + 0.60 * sheen) * (0.35 + 0.65 * clear_of_table);
+    for (const FloorShade& s : shades) {
+      const Eigen::Vector2d off = (Eigen::Vector2d(x, y) - s.middle_m).cwiseAbs() - s.half_size_m;
+      light *= 0.5 + 0.5 * smoothstep(-0.08, 0.18, off.cwiseMax(-0.08).norm() * (off.maxCoeff() > 0 ? 1 : -1));
+    }
+    return light;
+  });
+  return to_texture(rgb);
+}
+
 Texture wood_texture(int width, int height, const Eigen::Vector3f& light, const Eigen::Vector3f& dark,
                      std::uint64_t seed) {
   cv::RNG random(seed + 1);
   return to_texture(wood(width, height, light, dark, random));
-}
-
-Texture planks_texture(int width, int height, int planks, const Eigen::Vector3f& light, const Eigen::Vector3f& dark,
-                       std::uint64_t seed) {
-  cv::RNG random(seed + 1);
-  cv::Mat rgb(height, width, CV_8UC3);
-  for (int plank = 0; plank < planks; ++plank) {
-    const int top = plank * height / planks;
-    const int tall = (plank + 1) * height / planks - top;
-    cv::Mat one = wood(width, tall, light, dark, random) * random.uniform(0.82, 1.06);
-    cv::line(one, {0, 0}, {width, 0}, cv::Scalar(dark.x(), dark.y(), dark.z()) * 0.45, std::max(1, tall / 48));
-    const int joint = random.uniform(0, width);
-    cv::line(one, {joint, 0}, {joint, tall}, cv::Scalar(dark.x(), dark.y(), dark.z()) * 0.5, 1);
-    one.copyTo(rgb(cv::Rect(0, top, width, tall)));
-  }
-  return to_texture(rgb);
 }
 
 Texture wall_texture(int width, int height, std::uint64_t seed) {
@@ -144,6 +213,23 @@ Texture wall_texture(int width, int height, std::uint64_t seed) {
   rectangle(rgb, 0.80, 0.935, 1.0, 0.985, {206, 200, 190});
   rectangle(rgb, 0.0, 0.985, 1.0, 1.0, {60, 48, 38});
   cv::GaussianBlur(rgb, rgb, cv::Size(), width / 400.0);
+  return to_texture(rgb);
+}
+
+Texture newspaper_texture(int width, int height, std::uint64_t seed) {
+  cv::RNG random(seed + 5);
+  cv::Mat rgb(height, width, CV_8UC3, cv::Scalar(242, 238, 226));
+  rectangle(rgb, 0.06, 0.03, 0.94, 0.10, {62, 60, 58});
+  rectangle(rgb, 0.37, 0.16, 0.94, 0.45, {150, 148, 140});
+  rectangle(rgb, 0.37, 0.33, 0.94, 0.45, {104, 104, 96});
+  for (int column = 0; column < 3; ++column) {
+    const double left = 0.06 + 0.31 * column;
+    for (double y = column == 0 ? 0.16 : 0.49; y < 0.96; y += 0.018) {
+      if (random.uniform(0.0, 1.0) < 0.06) continue;
+      rectangle(rgb, left, y, left + 0.26 * random.uniform(0.7, 1.0), y + 0.008,
+                cv::Scalar::all(random.uniform(96, 140)));
+    }
+  }
   return to_texture(rgb);
 }
 

@@ -1,16 +1,27 @@
-// What happens on the stage, from a JSON file. stage/scenarios holds examples; an unknown key is answered with those there are.
+// What happens on the stage, from a JSON file. stage/scenarios holds examples; an unknown key is answered with those
+// there are.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "protocol/vocabulary/intrinsics.hpp"
 #include "protocol/vocabulary/result.hpp"
 #include "stage/camera/path.hpp"
 #include "stage/camera/sensor.hpp"
+#include "stage/film/events.hpp"
 #include "stage/player/player.hpp"
 #include "stage/room/room.hpp"
 
 namespace counterpart::stage {
+
+// How the exposure spreads over time. The stamped time is the middle of it all.
+struct Shutter {
+  double open_s = 0;        // motion blur: how long each row gathers light; 0: a moment
+  int samples = 7;          // moments that stand for that time
+  double readout_s = 0;     // rolling shutter: from the first row's time to the last one's
+  bool interlaced = false;  // two fields, the even rows' half a period before the odd rows'
+};
 
 struct Scenario {
   std::string name = "unnamed";
@@ -21,8 +32,12 @@ struct Scenario {
   Intrinsics intrinsics{1, 720, 576, 610, 610, 359.5, 287.5, {}};
   BoardGeometry board;
   bool no_pieces = false;  // an empty board
+  bool no_board = false;   // objects alone
+  std::vector<ObjectPlan> objects;
   CameraPath path;
   SensorOptions sensor;
+  Shutter shutter;
+  std::vector<Event> events;
   bool player_present = true;
   PlayerOptions player;
   double light = 1;

@@ -22,7 +22,7 @@ struct DrawMesh {
 struct DrawProgram {
   GlProgram program;
   GLint X_CB, clip_from_camera, shadow_from_B, k, usable_r2, light_direction, light_colour, ambient_up, ambient_down,
-      eye_B, colour, highlight, shadow_edge, parameters;
+      eye_B, colour, highlight, shadow_edge, parameters, level_shade, level_light;
   Eigen::Vector4f parameter_values = Eigen::Vector4f::Zero();
 };
 
@@ -45,7 +45,9 @@ DrawProgram with_locations(GlProgram program) {
                      at("colour"),
                      at("highlight"),
                      at("shadow_edge"),
-                     at("parameters")};
+                     at("parameters"),
+                     at("level_shade"),
+                     at("level_light")};
   glUseProgram(result.program.id());
   glUniform1i(glGetUniformLocation(result.program.id(), "image"), kImageUnit);
   glUniform1i(glGetUniformLocation(result.program.id(), "shadow_map"), kShadowUnit);
@@ -83,6 +85,11 @@ Eigen::Matrix4f shadow_from_B(const Lighting& lighting, float radius_m) {
 }
 
 }  // namespace
+
+Eigen::Vector3f level_light(const Lighting& lighting) {
+  const float lambert = std::max(0.f, lighting.direction_B.normalized().z());
+  return (lighting.ambient_up + lighting.colour * lambert).cwiseSqrt();
+}
 
 struct Renderer::State {
   std::unique_ptr<GlContext> context;  // first, so that it outlives every name below
@@ -230,10 +237,13 @@ TextureId Renderer::add_texture(const Texture& texture) {
   return TextureId(static_cast<std::uint32_t>(state_->textures.size() - 1));
 }
 
-Result<SurfaceId> Renderer::add_surface(const std::string& glsl, bool lit) {
+Result<SurfaceId> Renderer::add_surface(const std::string& glsl, Shade shade) {
   state_->context->make_current();
-  Result<GlProgram> program =
-      link_program(vertex_shader(), fragment_shader(lit ? ShadingModel::lit : ShadingModel::unlit, glsl));
+  const ShadingModel model = shade == Shade::lit     ? ShadingModel::lit
+                             : shade == Shade::unlit ? ShadingModel::unlit
+                             : shade == Shade::level ? ShadingModel::level
+                                                     : ShadingModel::painted;
+  Result<GlProgram> program = link_program(vertex_shader(), fragment_shader(model, glsl));
   if (!program) return tl::make_unexpected(program.error());
   state_->programs.push_back(with_locations(std::move(*program)));
   return SurfaceId(static_cast<std::uint32_t>(state_->programs.size() - 1));
@@ -295,6 +305,10 @@ void Renderer::State::use(const DrawProgram& p, const View& view, const Lighting
   const float texel = 1.f / static_cast<float>(shadow_size);
   glUniform2f(p.shadow_edge, std::max(0.5f * texel, lighting.softness_m / (4 * radius_m)), 1.5f * texel);
   glUniform4fv(p.parameters, 1, p.parameter_values.data());
+  const Eigen::Vector3f level_shade = lighting.ambient_up.cwiseSqrt();
+  const Eigen::Vector3f in_light = level_light(lighting);
+  glUniform3fv(p.level_shade, 1, level_shade.data());
+  glUniform3fv(p.level_light, 1, in_light.data());
 }
 
 void Renderer::State::draw_picture(const View& view, const Lighting& lighting, const Eigen::Matrix4f& from_B,
@@ -337,7 +351,8 @@ Drawing Renderer::draw(const View& view, const Lighting& lighting, std::span<con
   const cv::Rect box = options.box ? (*options.box & whole) : whole;
   const Eigen::Vector4f& b = options.background;
   Drawing drawing;
-  drawing.bgra = cv::Mat(s.height, s.width, CV_8UC4, cv::Scalar(b[0], b[1], b[2], b[3]) * 255);
+  drawing.bgra.create(s.height, s.width, CV_8UC4);
+  if (box != whole) drawing.bgra = cv::Scalar(b[0], b[1], b[2], b[3]) * 255;
   if (options.depth) {
     drawing.depth_m = cv::Mat(s.height, s.width, CV_32FC1, cv::Scalar(std::numeric_limits<float>::infinity()));
   }

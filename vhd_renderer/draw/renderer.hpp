@@ -32,6 +32,15 @@ enum class SurfaceId : std::uint32_t {
                 // the shadows of the drawn things darken it
 };
 
+// How a surface of one's own is lit.
+enum class Shade {
+  lit,    // by the light's direction and shadows; surface_colour gives linear colour
+  unlit,  // not at all; linear colour
+  level,  // faces z of B: direct light is the same all over, one look tells the shadow; surface_colour gives the
+          // colour's square root
+  painted,  // not at all; the square root, as a texture holds it. What is cheapest
+};
+
 struct Material {
   SurfaceId surface = SurfaceId::lit;
   TextureId texture = TextureId::white;
@@ -58,6 +67,10 @@ struct Lighting {
   float shadow_radius_m = 0.6f;              // 0: no shadows
   float softness_m = 0.006f;                 // width of a shadow's edge
 };
+
+// The colour (its square root) by which the light multiplies a white surface that faces B's z, out of every shadow:
+// what Shade::level gives there.
+Eigen::Vector3f level_light(const Lighting& lighting);
 
 struct DrawOptions {
   Eigen::Vector4f background{0, 0, 0, 0};  // b, g, r, a; 0..1
@@ -90,8 +103,8 @@ class Renderer {
 
   // glsl defines `vec3 surface_colour(vec2 uv, vec3 p_O, vec3 colour)`: linear colour of a point before light, from the
   // mesh's uv, the point in the mesh's own frame and the material's colour. It may use `uniform sampler2D image` (the
-  // material's texture, encoded: square it) and `uniform vec4 parameters`. `lit` false: the colour is shown as it is.
-  [[nodiscard]] Result<SurfaceId> add_surface(const std::string& glsl, bool lit = true);
+  // material's texture, encoded: square it) and `uniform vec4 parameters`. Empty glsl: texture times colour.
+  [[nodiscard]] Result<SurfaceId> add_surface(const std::string& glsl, Shade shade = Shade::lit);
   void set_parameters(SurfaceId surface, const Eigen::Vector4f& parameters);
 
   // In the order given: near things first spare the work on what they hide.

@@ -101,6 +101,10 @@ vec3 surface_colour(vec2 place, vec3 at, vec3 tint) {
 }
 )";
 
+const char* const kEncodedSurface = R"(
+vec3 surface_colour(vec2 place, vec3 at, vec3 tint) { return texture(image, place).rgb * tint; }
+)";
+
 // A drawn thing is never quite black: black is the key colour.
 const char* const kLit = R"(
 void main() {
@@ -121,6 +125,19 @@ void main() {
 
 const char* const kUnlit = R"(
 void main() { drawn = vec4(max(sqrt(surface_colour(uv, p_O, colour)), 0.004), 1.0); }
+)";
+
+const char* const kLevel = R"(
+uniform vec3 level_shade;
+uniform vec3 level_light;
+void main() {
+  float light = texture(shadow_map, vec3(p_S.xy, p_S.z - shadow_edge.y));
+  drawn = vec4(max(surface_colour(uv, p_O, colour) * mix(level_shade, level_light, light), 0.004), 1.0);
+}
+)";
+
+const char* const kPainted = R"(
+void main() { drawn = vec4(max(surface_colour(uv, p_O, colour), 0.004), 1.0); }
 )";
 
 // The direct light is a share of all light here; the picture's numbers are square roots of light.
@@ -154,7 +171,9 @@ std::string shadow_fragment_shader() {
 }
 
 std::string fragment_shader(ShadingModel model, const std::string& surface_glsl) {
-  const std::string head = std::string(kFragmentHead) + (surface_glsl.empty() ? kPlainSurface : surface_glsl);
+  const bool encoded = model == ShadingModel::level || model == ShadingModel::painted;
+  const std::string plain = encoded ? kEncodedSurface : kPlainSurface;
+  const std::string head = kFragmentHead + (surface_glsl.empty() ? plain : surface_glsl);
   switch (model) {
     case ShadingModel::lit:
       return head + replaced(kLit, "CUTOUT", "");
@@ -162,6 +181,10 @@ std::string fragment_shader(ShadingModel model, const std::string& surface_glsl)
       return head + replaced(kLit, "CUTOUT", "if (texture(image, uv).a < 0.5) discard;");
     case ShadingModel::unlit:
       return head + kUnlit;
+    case ShadingModel::level:
+      return head + kLevel;
+    case ShadingModel::painted:
+      return head + kPainted;
     case ShadingModel::catcher:
       break;
   }

@@ -39,5 +39,31 @@ TEST(Sensor, BlurKeepsAnEdgeInItsPlace) {
   EXPECT_EQ(picture.at<cv::Vec3b>(10, 19)[0] + picture.at<cv::Vec3b>(10, 20)[0], 200);
 }
 
+TEST(Sensor, GainMultipliesTheLight) {
+  cv::Mat picture(10, 10, CV_8UC3, cv::Scalar::all(100));
+  expose(picture, {0, 0}, 1, 0, {0.25, 1, 2.25});  // numbers are square roots of light
+  EXPECT_EQ(picture.at<cv::Vec3b>(5, 5), cv::Vec3b(50, 100, 150));
+}
+
+TEST(Sensor, DriftsSwingRoundOne) {
+  SensorOptions options;
+  options.exposure_drift_ev = 1;
+  options.drift_period_s = 8;
+  EXPECT_NEAR(drift_gain(options, 2)[1], 2, 1e-9);
+  EXPECT_NEAR(drift_gain(options, 6)[1], 0.5, 1e-9);
+  EXPECT_NEAR(drift_gain(options, 0)[2], 1, 1e-9);
+}
+
+TEST(Sensor, JpegLeavesItsMarks) {
+  cv::Mat picture(64, 64, CV_8UC3);
+  cv::randu(picture, 0, 255);
+  cv::Mat squeezed = picture.clone();
+  SensorOptions options{0, 0};
+  options.jpeg_quality = 20;
+  expose(squeezed, options, 1, 0);
+  EXPECT_EQ(squeezed.size(), picture.size());
+  EXPECT_GT(cv::norm(picture, squeezed, cv::NORM_L1) / (64 * 64 * 3), 5);
+}
+
 }  // namespace
 }  // namespace counterpart::stage

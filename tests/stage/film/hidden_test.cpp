@@ -35,6 +35,21 @@ TEST(Hidden, PiecesHideALittleOfTheGridAndTheArmMore) {
   EXPECT_LT(with_arm.surface_by_arm, 0.6);
 }
 
+TEST(Hidden, AnObjectHidesTheBoardAndTheTableHidesAnObject) {
+  World world = starting_world({});
+  world.player_present = false;
+  world.pieces.clear();
+  ObjectPlan plan{"box", ObjectKind::box, {0.1, 0.1, 0.2}};
+  world.objects = {object_at(plan, -0.015, 0)};  // in the middle of the board
+  EXPECT_GT(hidden_shares(world, from_above()).edges, 0.1);
+  // Of its edges only those that are in the board's thickness are not seen.
+  EXPECT_LT(object_edges_hidden(world, 0, from_above()), 0.1);
+  plan.on_floor = true;
+  world.objects = {object_at(plan, -0.015, 0)};
+  EXPECT_EQ(hidden_shares(world, from_above()).edges, 0);
+  EXPECT_NEAR(object_edges_hidden(world, 0, from_above()), 1, 1e-9);
+}
+
 TEST(Hidden, OutsideThePictureIsHidden) {
   World world = starting_world({});
   world.player_present = false;

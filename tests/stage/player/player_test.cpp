@@ -1,5 +1,7 @@
 #include "stage/player/player.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "stage/player/moves.hpp"
@@ -106,6 +108,100 @@ TEST(Player, CapturesBecauseHeMust) {
   wait(player, world, 4);
   const std::string after = occupancy_of(world);
   EXPECT_EQ(after.substr(25, 5).find('b') != std::string::npos, true) << after;
+}
+
+// 24 stands so that 19 or 20 would take it by a move of two rows.
+TEST(Player, AMoveTooFarIsNoCapture) {
+  PlayerOptions options;
+  options.illegal_moves = {{1, IllegalKind::too_far}};
+  World world = starting_world({});
+  Player player(options);
+  BoardState state = start_state(GamePhase::real_to_move, Side::dark);
+  state.squares[24 - 1] = 'w';
+  player.see(state);
+  wait(player, world, 3);
+  const std::string after = occupancy_of(world);
+  for (const PlayerMove& move : legal_moves("international", state.squares, Side::dark)) {
+    std::string legal = start_state(GamePhase::real_to_move, Side::dark).squares.substr(0, 20) + std::string(30, 'e');
+    legal[static_cast<std::size_t>(move.path.front() - 1)] = 'e';
+    legal[static_cast<std::size_t>(move.path.back() - 1)] = 'b';
+    EXPECT_NE(after, legal);
+  }
+  EXPECT_NE(after.substr(25, 5), "eeeee") << "two rows ahead: " << after;
+}
+
+TEST(Player, MovesTheWrongPieceWhenACaptureIsDue) {
+  PlayerOptions options;
+  options.illegal_moves = {{1, IllegalKind::wrong_piece}};
+  World world = starting_world({});
+  Player player(options);
+  BoardState state = start_state(GamePhase::real_to_move, Side::dark);
+  state.squares[24 - 1] = 'w';
+  player.see(state);
+  wait(player, world, 4);
+  const std::string after = occupancy_of(world);
+  EXPECT_EQ(std::count(after.begin(), after.end(), 'b'), 20);
+  EXPECT_NE(after.substr(20, 5), "eeeee") << after;
+  EXPECT_EQ(after.substr(25), std::string(25, 'e')) << "nobody has jumped: " << after;
+}
+
+TEST(Player, KnocksAPieceOverPutsItUpAndPlaysOn) {
+  PlayerOptions options;
+  options.knocks_over = {1};
+  World world = starting_world({});
+  Player player(options);
+  player.see(start_state(GamePhase::real_to_move, Side::dark));
+  int lying = 0;
+  for (int i = 0; i < 10 * 25; ++i) {
+    player.step(0.04, world);
+    const std::string now = occupancy_of(world);
+    if (world.hand.held_piece >= 0 || std::count(now.begin(), now.end(), 'b') == 20) continue;
+    ++lying;
+    EXPECT_EQ(std::count(now.begin(), now.end(), 'b'), 19);
+    EXPECT_EQ(now.substr(20), std::string(30, 'e')) << "before his move";
+  }
+  EXPECT_GT(lying, 15) << "for more than half a second";
+  EXPECT_TRUE(at_rest(world));
+  const std::string after = occupancy_of(world);
+  EXPECT_EQ(std::count(after.begin(), after.end(), 'b'), 20);
+  EXPECT_EQ(std::count(after.begin() + 20, after.begin() + 25, 'b'), 1) << "one man has moved";
+  for (const RealPiece& piece : world.pieces) EXPECT_EQ(piece.roll_rad, 0);
+}
+
+TEST(Player, ForgetsACapturedPieceForAWhile) {
+  PlayerOptions options;
+  options.forgets_s = 5;
+  World world = starting_world({});
+  Player player(options);
+  BoardState state = start_state(GamePhase::waiting_for_removal, Side::light);
+  state.to_remove = {14, 18};
+  player.see(state);
+  wait(player, world, 5);
+  EXPECT_EQ((piece_on(world, 14) < 0) + (piece_on(world, 18) < 0), 1);
+  wait(player, world, 10);
+  EXPECT_EQ((piece_on(world, 14) < 0) + (piece_on(world, 18) < 0), 2);
+}
+
+TEST(Player, RestsHisHandOnTheBoard) {
+  PlayerOptions options;
+  options.practise = true;
+  options.rests = {{0, 5, {0, 0.04}}};
+  World world = starting_world({});
+  Player player(options);
+  wait(player, world, 3);
+  EXPECT_LT(world.hand.pinch_B.head<2>().norm(), 0.06);
+  wait(player, world, 2);
+  EXPECT_LT(world.hand.pinch_B.head<2>().norm(), 0.06);
+}
+
+TEST(World, WhatLiesBesideTheBoardStaysWhenTheBoardIsMoved) {
+  World world = starting_world({});
+  world.pieces[0].square = 0;
+  world.pieces[0].p_B = {-0.4, 0, -0.015};
+  const Eigen::Vector3d standing = world.pieces[1].p_B;
+  move_board(world, Eigen::Isometry3d(Eigen::Translation3d(0.05, 0, 0)));
+  EXPECT_NEAR(world.pieces[0].p_B.x(), -0.45, 1e-12);
+  EXPECT_EQ(world.pieces[1].p_B, standing);
 }
 
 TEST(Player, TheHandMovesSmoothly) {

@@ -48,7 +48,7 @@ TEST(Room, PiecesAreDarkAndCastShadows) {
   const View view = from_above();
   RoomOptions options;
   options.board.played_on = SquareColour::light;  // so that the square round a piece is bright
-  options.light_direction_B = {-0.6f, 0.f, 0.6f};
+  options.light_direction_R = {-0.6f, 0.f, 0.6f};
   World world = starting_world(options.board);
   world.player_present = false;
   world.pieces.resize(1);
