@@ -4,6 +4,9 @@
 #include <thread>
 
 #include <boost/asio.hpp>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
 
 #include "protocol/capture/recorder.hpp"
 #include "protocol/session/hub.hpp"
@@ -23,6 +26,8 @@ constexpr auto kGoodbyeLimit = std::chrono::milliseconds(300);
 constexpr std::size_t kMostAtOnce = 32;  // messages in one write; two buffers each, and sendmsg takes 64
 constexpr std::size_t kMostBytesAtOnce = 256U << 10;
 constexpr int kMostReadsInARow = 64;
+constexpr std::int64_t kLease = 2'000'000;
+constexpr std::int64_t kLongestPatience = 1'000'000'000'000'000;  // eleven days; more would not fit
 
 std::int64_t now() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
@@ -43,6 +48,25 @@ Error network_error(const error_code& error, const std::string& address) {
   }
   return {ErrorCode::io, address + ": " + error.message()};
 }
+
+// Ends a poll from another thread.
+class WakeUp {
+ public:
+  WakeUp() : file_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
+  ~WakeUp() { ::close(file_); }
+  WakeUp(const WakeUp&) = delete;
+  WakeUp& operator=(const WakeUp&) = delete;
+
+  int get() const { return file_; }
+  void set() const { static_cast<void>(::eventfd_write(file_, 1)); }
+  void clear() const {
+    eventfd_t ignored = 0;
+    static_cast<void>(::eventfd_read(file_, &ignored));
+  }
+
+ private:
+  int file_;
+};
 
 struct Link {
   Link(tcp::socket s, ConnectionId i) : socket(std::move(s)), id(i) {}
@@ -66,6 +90,7 @@ class TcpEndpoint : public Endpoint {
         acceptor_(io_),
         resolver_(io_),
         timer_(io_),
+        lease_timer_(io_),
         work_(asio::make_work_guard(io_)) {}
 
   ~TcpEndpoint() override {
@@ -146,7 +171,7 @@ class TcpEndpoint : public Endpoint {
     const std::lock_guard lock(mutex_);
     if (!outgoing) return refuse(peer, outgoing.error());
     hub_.send(peer, *outgoing, now());
-    after_change();
+    after_send();
   }
 
   void broadcast(const Message& message) override {
@@ -154,16 +179,20 @@ class TcpEndpoint : public Endpoint {
     const std::lock_guard lock(mutex_);
     if (!outgoing) return refuse(0, outgoing.error());
     hub_.broadcast(*outgoing, now());
-    after_change();
+    after_send();
   }
 
+  // A program that waits here reads the sockets itself: a message then costs one wake-up less.
   std::vector<Inbound> receive(std::int64_t timeout_ns) override {
     std::unique_lock lock(mutex_);
-    if (timeout_ns > 0) {
-      changed_.wait_for(lock, std::chrono::nanoseconds(timeout_ns), [&] { return hub_.has_inbound(); });
+    const std::int64_t deadline = now() + std::min(timeout_ns, kLongestPatience);
+    while (!hub_.has_inbound()) {
+      const std::int64_t left = deadline - now();
+      if (left <= 0) break;
+      read_in_place(lock, left);
     }
     auto taken = hub_.take_inbound();
-    if (!taken.empty()) wait_for_all();
+    if (!leased()) wait_for_all();  // it may have been too full to read on
     return taken;
   }
 
@@ -177,7 +206,7 @@ class TcpEndpoint : public Endpoint {
  private:
   void refuse(PeerId peer, const Error& error) {
     hub_.report(peer, error, now());
-    changed_.notify_all();
+    after_change();
   }
 
   // --- everything below is called with the mutex held ---
@@ -218,6 +247,7 @@ class TcpEndpoint : public Endpoint {
     socket.non_blocking(true, ignored);
     const auto link = std::make_shared<Link>(std::move(socket), id);
     links_[id] = link;
+    ++link_changes_;
     after_change();
   }
 
@@ -261,6 +291,60 @@ class TcpEndpoint : public Endpoint {
                             });
   }
 
+  void after_send() {
+    bool over = hub_.has_inbound();
+    for (const auto& [id, link] : links_) {
+      flush(link);
+      over = over || link->broken || hub_.finished(id);
+    }
+    if (over) after_change();
+  }
+
+  // --- reading on the program's own thread ---
+  //
+  // While it lasts, and a moment longer, the endpoint's thread leaves reading alone; a program that does not come back
+  // loses nothing but that moment.
+
+  bool leased() const { return !leaving_ && (polling_ || now() < lease_ns_); }
+
+  void read_in_place(std::unique_lock<std::mutex>& lock, std::int64_t timeout_ns) {
+    std::vector<pollfd> waits{{wake_.get(), POLLIN, 0}};
+    std::vector<std::shared_ptr<Link>> links{nullptr};
+    for (const auto& [id, link] : links_) {
+      if (link->broken || !hub_.wants_read(id)) continue;
+      waits.push_back({link->socket.native_handle(), POLLIN, 0});
+      links.push_back(link);
+    }
+    polling_ = true;
+    lock.unlock();
+    const timespec limit{timeout_ns / 1'000'000'000, timeout_ns % 1'000'000'000};
+    const int ready = ::ppoll(waits.data(), waits.size(), &limit, nullptr);
+    lock.lock();
+    polling_ = false;
+    lease_ns_ = now() + kLease;
+    end_lease_later();
+    if (ready <= 0) return;
+    if (waits[0].revents != 0) wake_.clear();
+    for (std::size_t i = 1; i < waits.size(); ++i) {
+      if (waits[i].revents != 0 && links_.count(links[i]->id) > 0 && !links[i]->broken) read(links[i]);
+    }
+    after_change();
+  }
+
+  void end_lease_later() {
+    if (lease_ending_) return;
+    lease_ending_ = true;
+    lease_timer_.expires_after(std::chrono::nanoseconds(kLease));
+    lease_timer_.async_wait([this](const error_code& cancelled) {
+      if (cancelled) return;
+      const std::lock_guard lock(mutex_);
+      lease_ending_ = false;
+      if (polling_) return;
+      if (leased()) return end_lease_later();
+      wait_for_all();
+    });
+  }
+
   // Whatever happened: write what can be written, read what may be read, close what is over, set the alarm clock.
   void after_change() {
     if (!leaving_) {
@@ -273,6 +357,8 @@ class TcpEndpoint : public Endpoint {
     }
     set_alarm();
     if (hub_.has_inbound() || links_.empty()) changed_.notify_all();
+    if (polling_ && (hub_.has_inbound() || link_changes_ != link_changes_seen_)) wake_.set();
+    link_changes_seen_ = link_changes_;
   }
 
   std::vector<std::shared_ptr<Link>> all_links() const {
@@ -304,14 +390,14 @@ class TcpEndpoint : public Endpoint {
   }
 
   void wait_to_read(const std::shared_ptr<Link>& link) {
-    if (link->waiting_to_read || link->broken || !hub_.wants_read(link->id)) return;
+    if (link->waiting_to_read || link->broken || leased() || !hub_.wants_read(link->id)) return;
     link->waiting_to_read = true;
     link->socket.async_wait(tcp::socket::wait_read, [this, link](const error_code& error) {
       const std::lock_guard lock(mutex_);
       link->waiting_to_read = false;
       if (error) {
         break_link(link, error);
-      } else {
+      } else if (!leased()) {
         read(link);
       }
       after_change();
@@ -392,6 +478,7 @@ class TcpEndpoint : public Endpoint {
     if (link->waiting_to_read || link->waiting_to_write) return;
     hub_.closed(link->id, network_error(link->broken, to_text(address_)), now());
     links_.erase(link->id);
+    ++link_changes_;
   }
 
   LinkOptions options_;
@@ -401,12 +488,17 @@ class TcpEndpoint : public Endpoint {
   Hub hub_;
   HostPort address_;
   bool leaving_ = false;
+  WakeUp wake_;
+  bool polling_ = false;       // the program's thread waits on the sockets
+  bool lease_ending_ = false;  // lease_timer_ runs
+  std::int64_t lease_ns_ = 0;
+  std::uint64_t link_changes_ = 0, link_changes_seen_ = 0;  // links that came or went
   bool alarm_set_ = false;
   std::int64_t alarm_ns_ = 0;
   asio::io_context io_;
   tcp::acceptor acceptor_;
   tcp::resolver resolver_;
-  asio::steady_timer timer_;
+  asio::steady_timer timer_, lease_timer_;
   asio::executor_work_guard<asio::io_context::executor_type> work_;
   std::map<ConnectionId, std::shared_ptr<Link>> links_;
   std::thread thread_;
