@@ -132,13 +132,13 @@ def pose_error(poses_file, truth_file):
             if row["status"] == "lost":
                 lost += 1
                 continue
-            X, K = entry["X_CB"], entry["intrinsics"]
+            X, K = {"p": entry["p_CB"], "q": entry["q_CB"]}, entry["intrinsics"]
             p = [float(row[k]) for k in ("tx", "ty", "tz")]
             q = [float(row[k]) for k in ("qw", "qx", "qy", "qz")]
             mm.append(1000 * math.dist(p, X["p"]))
             dot = min(1.0, abs(sum(a * b for a, b in zip(q, X["q"]))))
             degrees.append(math.degrees(2 * math.acos(dot)))
-            half = entry["board"]["squares"] * entry["board"]["square_size_m"] / 2
+            half = entry["playing_surface_m"] / 2
             square = 0.0
             for cx, cy in ((-half, half), (half, half), (half, -half), (-half, -half)):
                 ends = []

@@ -1,6 +1,7 @@
 #include <exception>
 
 #include <CLI/CLI.hpp>
+#include <opencv2/core/utility.hpp>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -9,6 +10,8 @@
 int main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("tracker_server"));
   spdlog::set_pattern("%H:%M:%S %^%l%$ %v");
+
+  cv::setNumThreads(1);  // frames are small: hand-over to other threads costs more than it saves
 
   CLI::App app("Finds and follows a draughts board in a camera's pictures and reads the pieces on it.");
   app.set_version_flag("--version", COUNTERPART_VERSION);

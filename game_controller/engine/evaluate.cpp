@@ -83,14 +83,30 @@ bool is_drawish(const Rules& rules, const Position& p, int value_for_light) {
 
 }  // namespace
 
+std::string_view name_of(Evaluation evaluation) {
+  return evaluation == Evaluation::material ? "material" : evaluation == Evaluation::plain ? "plain" : "trained";
+}
+
+std::optional<Evaluation> find_evaluation(std::string_view name) {
+  for (const auto evaluation : {Evaluation::material, Evaluation::plain, Evaluation::trained}) {
+    if (name == name_of(evaluation)) return evaluation;
+  }
+  return std::nullopt;
+}
+
 int king_value(const Rules& rules) {
   return rules.flying_kings ? 300 : 130;
 }
 
-int evaluate(const Rules& rules, Evaluation evaluation, const Position& position) {
-  int value = material(rules, position);
-  if (evaluation == Evaluation::plain) {
-    value += rules.squares == 10 ? positional<10>(position) : positional<8>(position);
+int evaluate(const Rules& rules, Evaluation evaluation, const PatternWeights* weights, const Position& position) {
+  int value = 0;
+  if (evaluation == Evaluation::trained && rules.id == RulesId::international) {
+    value = pattern_value(weights != nullptr ? *weights : built_in_weights(), position);
+  } else {
+    value = material(rules, position);
+    if (evaluation != Evaluation::material) {
+      value += rules.squares == 10 ? positional<10>(position) : positional<8>(position);
+    }
   }
   if (is_drawish(rules, position, value)) value /= 8;
   return position.turn == Side::light ? value : -value;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "game_controller/engine/dice.hpp"
 #include "game_controller/rules/generate.hpp"
 
 namespace counterpart {
@@ -13,18 +14,11 @@ constexpr std::array<LevelPlan, highest_level> plans{{
     {Evaluation::material, 2, 0, 30},
     {Evaluation::plain, 3, 0, 12},
     {Evaluation::plain, 5, 20'000, 0},
-    {Evaluation::plain, 7, 60'000, 0},
-    {Evaluation::plain, 9, 150'000, 0},
-    {Evaluation::plain, 12, 500'000, 0},
-    {Evaluation::plain, 60, 1'500'000, 0},
+    {Evaluation::trained, 7, 60'000, 0},
+    {Evaluation::trained, 9, 150'000, 0},
+    {Evaluation::trained, 12, 500'000, 0},
+    {Evaluation::trained, 60, 1'500'000, 0},
 }};
-
-std::uint64_t mixed(std::uint64_t x) {  // splitmix64
-  x += 0x9E3779B97F4A7C15u;
-  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
-  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
-  return x ^ (x >> 31);
-}
 
 }  // namespace
 

@@ -8,74 +8,32 @@
 #include <utility>
 
 #include "game_controller/engine/level.hpp"
-#include "game_controller/notation/fen.hpp"
-#include "game_controller/notation/move_text.hpp"
-#include "game_controller/rules/generate.hpp"
+#include "game_controller/engine/mind.hpp"
 
 namespace counterpart {
 namespace {
 
-constexpr std::size_t table_bytes = std::size_t{32} << 20;
-constexpr std::size_t lockstep_table_bytes = std::size_t{4} << 20;  // cleared before each move, so small
-
-class Mind {
- public:
-  Mind(const Rules& rules, const OpponentOptions& options)
-      : rules_(rules),
-        plan_(plan_of_level(options.level)),
-        seed_(options.seed),
-        lockstep_(options.lockstep),
-        searcher_(rules, plan_.evaluation, options.lockstep ? lockstep_table_bytes : table_bytes) {}
-
-  Result<OpponentMove> answer(const std::string& fen, const std::function<bool()>& give_up) {
-    const auto position = read_fen(rules_, fen);
-    if (!position) return tl::make_unexpected(position.error());
-    if (!has_move(rules_, *position)) {
-      return failure(ErrorCode::invalid_argument, "There is no legal move in " + fen + ": the game is over.");
-    }
-    if (lockstep_) searcher_.clear();  // the answer depends on nothing but its arguments
-    const Choice choice = choose(searcher_, rules_, *position, {}, plan_, seed_, give_up);
-    OpponentMove move;
-    move.move = path_text(rules_, *position, choice.best.move);
-    move.score = choice.best.value / static_cast<double>(man_value);
-    Position at = *position;
-    for (const Move& step : choice.line) {
-      move.line.push_back(pdn_text(rules_, at, step));
-      at = after(rules_, at, step);
-    }
-    move.acted_thinking_s = acted_thinking_s(rules_, *position);
-    return move;
-  }
-
- private:
-  const Rules& rules_;
-  LevelPlan plan_;
-  std::uint64_t seed_;
-  bool lockstep_;
-  Searcher searcher_;
-};
-
 class LockstepOpponent final : public Opponent {
  public:
-  LockstepOpponent(const Rules& rules, const OpponentOptions& options) : mind_(rules, options) {}
+  explicit LockstepOpponent(std::unique_ptr<Mind> mind) : mind_(std::move(mind)) {}
 
   void think(const std::string& fen) override { fen_ = fen; }
 
   std::optional<Result<OpponentMove>> poll() override {
     if (!fen_) return std::nullopt;
     const std::string fen = *std::exchange(fen_, std::nullopt);
-    return mind_.answer(fen, {});
+    return mind_->answer(fen, {});
   }
 
  private:
-  Mind mind_;
+  std::unique_ptr<Mind> mind_;
   std::optional<std::string> fen_;
 };
 
 // Thinks on a thread of its own, so that the caller's frames go on.
 class ThreadedOpponent final : public Opponent {
  public:
-  ThreadedOpponent(const Rules& rules, const OpponentOptions& options) : mind_(rules, options) {
+  explicit ThreadedOpponent(std::unique_ptr<Mind> mind) : mind_(std::move(mind)) {
     thread_ = std::thread([this] { run(); });
   }
 
@@ -115,13 +73,13 @@ class ThreadedOpponent final : public Opponent {
       const int mine = wanted_;
       stop_ = false;
       lock.unlock();
-      auto answer = mind_.answer(fen, [this] { return stop_.load(); });
+      auto answer = mind_->answer(fen, [this] { return stop_.load(); });
       lock.lock();
       if (mine == wanted_) answer_ = std::move(answer);  // otherwise it was asked something newer meanwhile
     }
   }
 
-  Mind mind_;
+  std::unique_ptr<Mind> mind_;
   std::mutex mutex_;
   std::condition_variable wake_;
   std::atomic<bool> stop_ = false;
@@ -144,8 +102,10 @@ Result<std::unique_ptr<Opponent>> make_opponent(const OpponentOptions& options) 
     return failure(ErrorCode::invalid_argument,
                    "Level " + std::to_string(options.level) + " does not exist; levels go from 1 to 8.");
   }
-  if (options.lockstep) return std::make_unique<LockstepOpponent>(*rules, options);
-  return std::make_unique<ThreadedOpponent>(*rules, options);
+  auto mind = make_mind(*rules, options);
+  if (!mind) return tl::make_unexpected(mind.error());
+  if (options.lockstep) return std::make_unique<LockstepOpponent>(std::move(*mind));
+  return std::make_unique<ThreadedOpponent>(std::move(*mind));
 }
 
 }  // namespace counterpart

@@ -16,13 +16,19 @@ struct OpponentOptions {
   int level = 4;           // 1..8
   bool lockstep = false;   // searches by nodes inside `poll`, reads no clock: two runs give the same moves
   std::uint64_t seed = 1;  // of the choice among near-equal moves
+  std::string mind;  // empty: this program's engine; "hub:COMMAND": any Hub 2 engine, started by that command line
+  double move_time_s = 1;  // that a Hub engine has for a move
 };
 
+// Said as a move: the game is given up. A Hub engine that dies, keeps silent or names an illegal move does so.
+inline constexpr const char* opponent_resigns = "resigns";
+
 struct OpponentMove {
-  std::string move;               // as in PDN with the whole path: "32-28", "47x38x24x13x36"
+  std::string move;               // as in PDN with the whole path: "32-28", "47x38x24x13x36"; or opponent_resigns
   double score = 0;               // in men, for the side that moves
   std::vector<std::string> line;  // expected continuation, this move first
   double acted_thinking_s = 0;    // how long a person would seem to think about it
+  std::string note;               // with opponent_resigns: why
 };
 
 class Opponent {

@@ -4,8 +4,10 @@
 #include <array>
 #include <bit>
 #include <cstdlib>
+#include <optional>
 #include <utility>
 
+#include "game_controller/engine/endgame.hpp"
 #include "game_controller/engine/transposition.hpp"
 #include "game_controller/rules/generate.hpp"
 
@@ -53,6 +55,8 @@ struct Line {
 struct Searcher::State {
   const Rules* rules;
   Evaluation evaluation;
+  const PatternWeights* weights;
+  const EndgameTables* endgames = nullptr;
   TranspositionTable table;
   std::array<std::array<int, 64>, 64> history{};
   std::array<std::array<Killer, 2>, max_ply + 2> killers{};
@@ -63,7 +67,8 @@ struct Searcher::State {
   std::uint64_t leaves = 0;
   std::uint64_t leaf_plies = 0;
 
-  State(const Rules& r, Evaluation e, std::size_t bytes) : rules(&r), evaluation(e), table(bytes) {}
+  State(const Rules& r, Evaluation e, std::size_t bytes, const PatternWeights* w)
+      : rules(&r), evaluation(e), weights(w), table(bytes) {}
 
   bool out_of_time() const {
     if (limits.nodes > 0 && nodes >= limits.nodes) return true;
@@ -84,15 +89,23 @@ struct Searcher::State {
     return false;
   }
 
+  std::optional<int> known_ending(const Position& p, int ply) const {
+    if (endgames == nullptr || std::popcount(p.light | p.dark) > EndgameTables::most_pieces) return std::nullopt;
+    const auto value = endgames->find(p);
+    if (!value) return std::nullopt;
+    return value->outcome * (win_value - ply - value->plies);
+  }
+
   int rest_value(const Position& p, int ply) {
     ++leaves;
     leaf_plies += static_cast<std::uint64_t>(ply);
-    return evaluate(*rules, evaluation, p);
+    return evaluate(*rules, evaluation, weights, p);
   }
 
   // Captures are compulsory, so a position counts as quiet only when neither side could capture.
   int rest(const Position& p, int alpha, int beta, int ply, int quiet_plies) {
     count_node();
+    if (const auto ending = known_ending(p, ply)) return *ending;
     MoveList moves;
     generate_captures(*rules, p, moves);
     if (moves.empty()) {
@@ -170,6 +183,9 @@ struct Searcher::State {
     const std::uint64_t key = key_of(p);
     if (ply > 0 && is_repeated(key, p)) return 0;
     if (ply >= max_ply) return rest_value(p, ply);
+    if (ply > 0) {
+      if (const auto ending = known_ending(p, ply)) return *ending;
+    }
 
     const bool in_line = beta - alpha > 1;
     const Known* known = table.find(key);
@@ -272,10 +288,14 @@ struct Searcher::State {
   }
 };
 
-Searcher::Searcher(const Rules& rules, Evaluation evaluation, std::size_t table_bytes)
-    : state_(std::make_unique<State>(rules, evaluation, table_bytes)) {}
+Searcher::Searcher(const Rules& rules, Evaluation evaluation, std::size_t table_bytes, const PatternWeights* weights)
+    : state_(std::make_unique<State>(rules, evaluation, table_bytes, weights)) {}
 Searcher::~Searcher() = default;
 Searcher::Searcher(Searcher&&) noexcept = default;
+
+void Searcher::use_endgames(const EndgameTables* tables) {
+  state_->endgames = state_->rules->id == RulesId::international ? tables : nullptr;
+}
 
 void Searcher::clear() {
   state_->table.clear();

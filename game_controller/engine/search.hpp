@@ -13,6 +13,8 @@
 
 namespace counterpart {
 
+class EndgameTables;
+
 struct SearchLimits {
   int depth = 60;
   std::uint64_t nodes = 0;            // 0: no limit
@@ -35,9 +37,13 @@ struct SearchReport {
 
 class Searcher {
  public:
-  Searcher(const Rules& rules, Evaluation evaluation, std::size_t table_bytes);
+  // weights: see `evaluate`; they must outlive this.
+  Searcher(const Rules& rules, Evaluation evaluation, std::size_t table_bytes, const PatternWeights* weights = nullptr);
   ~Searcher();
   Searcher(Searcher&&) noexcept;
+
+  // International rules only. The tables must outlive this; nullptr: none.
+  void use_endgames(const EndgameTables* tables);
 
   // Forgets everything learnt: a new game.
   void clear();

@@ -147,7 +147,7 @@ void Choreographer::point_at(int square, const std::string& code, const std::str
 void Choreographer::conclude(bool won, bool drawn, const std::string& code, const std::string& text) {
   tell(at_player());
   tell(face(won || drawn ? "smile" : "sad", 0.8, 6));
-  tell(clip(won ? "nod" : "bow"));
+  tell(clip(won || drawn ? "offer_hand" : "applaud"));
   tell(words(code, text));
 }
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "game_controller/engine/opponent.hpp"
 #include "game_controller/game/state.hpp"
 #include "game_controller/notation/fen.hpp"
 #include "game_controller/notation/move_text.hpp"
@@ -110,6 +111,7 @@ void Game::State::commit(const Move& move) {
     promoted.squares = {route.squares.back()};
     if (mover == real_side()) human.say("crowned", sentence("crowned", promoted.squares));
   }
+  explain_surprise(before, move, route);
   move_names(route);
   record.play(move);
   announced.reset();
@@ -134,6 +136,10 @@ void Game::State::finish(const Ending& ending) {
 void Game::State::receive_engine_move(const std::string& text) {
   if (!thinking || real_to_move()) return;  // an answer to a question that no longer matters
   thinking = false;
+  if (text == opponent_resigns) {
+    const bool light_resigns = options.virtual_side == Side::light;
+    return finish({light_resigns ? GameResult::dark_wins : GameResult::light_wins, "resigned"});
+  }
   const auto move = read_move(*rules, record.position(), text);
   if (!move) {
     out.rejected.push_back("The engine's move was not taken: " + move.error().message);

@@ -46,9 +46,10 @@ void Game::State::obey(const Control& control) {
     case ControlKind::swap_sides:
       options.virtual_side = real_side();
       return restart(record.start());
+    case ControlKind::hint:
+      return hint(control.text);
     case ControlKind::level:
     case ControlKind::corners:
-    case ControlKind::hint:
     case ControlKind::quit:
       return;  // for others
   }

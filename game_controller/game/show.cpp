@@ -85,8 +85,15 @@ std::optional<Show> plan_show(const Occupancy& sight, const BoardGeometry& board
   show.scene.board = board;
   show.scene.table_height_m = table_height_m;
   show.scene.virtual_side = virtual_side;
-  const Point3 beside_B{0.6 * board.squares * D, edge_B[1] + away * 1.5 * D, -board.thickness_m};
+  // On the table, clear of the board's rim.
+  const double beside_m = board.squares * D / 2 + board.border_m + 2 * board.piece_radius_m;
+  const Point3 beside_B{beside_m, edge_B[1] + away * 1.5 * D, -board.thickness_m};
   show.scene.pieces.push_back({kPiece, Side::light, false, false, beside_B});
+
+  for (const Cell& cell : cells.pieces) {
+    const std::string name = "real_" + std::to_string(cell.row) + "_" + std::to_string(cell.col);
+    show.scene.pieces.push_back({name, other(virtual_side), false, true, centre_of_cell_B(cell, board)});
+  }
 
   std::uint64_t last = 0;
   const auto then = [&](Action action) {

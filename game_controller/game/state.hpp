@@ -51,6 +51,8 @@ struct Game::State {
   std::int64_t reminded_ns = 0;
   std::vector<Bits> stops;  // own pieces as seen in passing since the last position: the way of a capture
 
+  std::vector<std::string> explained;  // rules that have been explained already
+
   std::int64_t now_ns = 0;
   GameOutputs out;
 
@@ -97,6 +99,11 @@ struct Game::State {
 
   void obey(const Control& control);
   void it_was(const std::string& text);
+
+  // Explaining.
+  void hint(const std::string& about);  // "last": what was wrong with the real player's last move
+  void explain_last();
+  void explain_surprise(const Position& before, const Move& move, const Route& route);
 
   // Giving out.
   GameEvent& event(EventKind kind);

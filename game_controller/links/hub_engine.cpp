@@ -44,7 +44,8 @@ struct Level {
 
 class HubEngine {
  public:
-  HubEngine(std::istream& in, std::ostream& out) : in_(in), out_(out), record_(rules_, start_position(rules_)) {}
+  HubEngine(std::istream& in, std::ostream& out, const std::function<const EndgameTables*()>& endgames)
+      : in_(in), out_(out), ask_for_endgames_(endgames), record_(rules_, start_position(rules_)) {}
   ~HubEngine() { stop_search(); }
 
   void run() {
@@ -84,7 +85,8 @@ class HubEngine {
     } else if (command == "set-param") {
       set_parameter(line);
     } else if (command == "init") {
-      searcher();
+      if (endgames_ == nullptr && ask_for_endgames_) endgames_ = ask_for_endgames_();
+      searcher().use_endgames(endgames_);
       put("ready");
     } else if (command == "new-game") {
       searcher().clear();
@@ -103,7 +105,8 @@ class HubEngine {
                            .with("version", COUNTERPART_VERSION)
                            .with("author", "the Counterpart project")));
     put("param name=level value=0 type=int min=0 max=8");
-    put("param name=evaluation value=" + evaluation_name_ + " type=enum values=\"plain material\"");
+    put("param name=evaluation value=" + std::string(name_of(evaluation_)) +
+        " type=enum values=\"trained plain material\"");
     put("param name=hash-mb value=" + std::to_string(hash_mb_) + " type=int min=1 max=4096");
     put("wait");
   }
@@ -117,8 +120,9 @@ class HubEngine {
       if (!level) return error("level must be 0 (full strength) to 8");
       level_of_play_ = static_cast<int>(*level);
     } else if (*name == "evaluation") {
-      if (*value != "plain" && *value != "material") return error("evaluation must be plain or material");
-      evaluation_name_ = *value;
+      const auto evaluation = find_evaluation(*value);
+      if (!evaluation) return error("evaluation must be trained, plain or material");
+      evaluation_ = *evaluation;
     } else if (*name == "hash-mb") {
       const auto mb = hub_number(*value, 1, 4096);
       if (!mb) return error("hash-mb must be 1 to 4096");
@@ -131,10 +135,9 @@ class HubEngine {
 
   Searcher& searcher() {
     if (!searcher_) {
-      const Evaluation evaluation = level_of_play_ > 0               ? plan_of_level(level_of_play_).evaluation
-                                    : evaluation_name_ == "material" ? Evaluation::material
-                                                                     : Evaluation::plain;
+      const Evaluation evaluation = level_of_play_ > 0 ? plan_of_level(level_of_play_).evaluation : evaluation_;
       searcher_ = std::make_unique<Searcher>(rules_, evaluation, static_cast<std::size_t>(hash_mb_) << 20);
+      searcher_->use_endgames(endgames_);
     }
     return *searcher_;
   }
@@ -234,7 +237,10 @@ class HubEngine {
 
   void inform(const SearchReport& report) {
     std::string line;
-    for (const Move& move : report.line) line += (line.empty() ? "" : " ") + hub_text(rules_, move);
+    for (const Move& move : report.line) {
+      if (!line.empty()) line += ' ';
+      line += hub_text(rules_, move);
+    }
     const double seconds = elapsed();
     put(write_hub_line(
         HubLine{"info", {}}
@@ -273,9 +279,11 @@ class HubEngine {
 
   std::istream& in_;
   std::ostream& out_;
+  const std::function<const EndgameTables*()>& ask_for_endgames_;
+  const EndgameTables* endgames_ = nullptr;
   const Rules& rules_ = international_rules;
   int level_of_play_ = 0;  // 0: full strength within the limits of `level`
-  std::string evaluation_name_ = "plain";
+  Evaluation evaluation_ = Evaluation::trained;
   int hash_mb_ = 64;
   std::unique_ptr<Searcher> searcher_;
   Record record_;
@@ -294,8 +302,8 @@ class HubEngine {
 
 }  // namespace
 
-void run_hub_engine(std::istream& in, std::ostream& out) {
-  HubEngine(in, out).run();
+void run_hub_engine(std::istream& in, std::ostream& out, const std::function<const EndgameTables*()>& endgames) {
+  HubEngine(in, out, endgames).run();
 }
 
 }  // namespace counterpart

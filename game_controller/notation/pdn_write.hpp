@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "game_controller/notation/pdn_game.hpp"
 #include "game_controller/rules/record.hpp"
 
 namespace counterpart {
@@ -23,5 +24,8 @@ std::string pdn_result(GameResult result);
 
 // Lines of at most 79 characters. A start other than the usual one is written as FEN tag.
 std::string write_pdn(const PdnTags& tags, const Record& record, GameResult result);
+
+// A game that was read, with all its tags and remarks.
+std::string write_pdn(const PdnGame& game);
 
 }  // namespace counterpart

@@ -1,19 +1,26 @@
 // draughts: counts moves, judges, plays, and talks to other draughts programs.
+#include <bit>
 #include <chrono>
 #include <cstdio>
 #include <functional>
 #include <iostream>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "game_controller/engine/endgame.hpp"
 #include "game_controller/engine/level.hpp"
 #include "game_controller/links/hub_engine.hpp"
 #include "game_controller/notation/fen.hpp"
 #include "game_controller/notation/move_text.hpp"
+#include "game_controller/programs/arena.hpp"
+#include "game_controller/programs/check.hpp"
+#include "game_controller/programs/dxp.hpp"
 #include "game_controller/programs/judge_lines.hpp"
 #include "game_controller/programs/play.hpp"
+#include "game_controller/programs/train.hpp"
 #include "game_controller/rules/generate.hpp"
 
 namespace {
@@ -56,9 +63,16 @@ int run_best(const Rules& rules, const std::string& fen, double move_time_s) {
     return complain({ErrorCode::invalid_argument, "there is no legal move in " + fen + "; the game is over there."},
                     failed);
   }
-  const auto start = Clock::now();
-  Searcher searcher(rules, Evaluation::plain, std::size_t{64} << 20);
+  auto start = Clock::now();
+  Searcher searcher(rules, Evaluation::trained, std::size_t{64} << 20);
+  std::optional<EndgameTables> endgames;
+  constexpr int tables_soon_matter = 8;  // pieces
+  if (rules.id == RulesId::international && std::popcount(position->light | position->dark) <= tables_soon_matter) {
+    endgames = EndgameTables::load_or_generate();
+    searcher.use_endgames(&*endgames);
+  }
   SearchLimits limits;
+  start = Clock::now();  // loading the tables is no thinking
   limits.give_up = [&] { return seconds_since(start) >= move_time_s; };
   const SearchReport report = searcher.search(*position, {}, limits);
   nlohmann::ordered_json best;
@@ -119,6 +133,56 @@ int main(int argc, char** argv) {
 
   CLI::App* hub_command = app.add_subcommand("hub", "Is a Hub 2 engine on standard input and output");
 
+  TrainOptions training;
+  CLI::App* train_command = app.add_subcommand("train", "Learns the weights of the evaluation from games with itself");
+  train_command->add_option("--out", training.out, "file for the weights")->required();
+  train_command->add_option("--start", training.start, "weights to go on from");
+  train_command->add_option("--games", training.games, "of each round")->capture_default_str();
+  train_command->add_option("--depth", training.depth, "plies that each move is thought about")->capture_default_str();
+  train_command->add_option("--epochs", training.epochs, "times that all positions are gone through")
+      ->capture_default_str();
+  train_command->add_option("--seed", training.seed, "of the games")->capture_default_str();
+
+  std::string file;
+  double most_leaves = 1e12;
+  CLI::App* check_command =
+      with_rules(app.add_subcommand("check", "Compares the rules with a file of known positions"));
+  check_command->add_option("file", file, "JSON: {\"positions\": [{\"fen\", \"perft\" or \"legal\"}]}")->required();
+  check_command->add_option("--most-leaves", most_leaves, "counts above this are left out");
+
+  CLI::App* pdn_command = app.add_subcommand("pdn", "Reads a PDN file leniently, writes it strictly");
+  pdn_command->add_option("file", file, "PDN file")->required();
+
+  ArenaOptions arena;
+  CLI::App* arena_command = app.add_subcommand("arena", "Measures two of its own players against each other");
+  arena_command->add_option("--a", arena.a, "level:1-8, trained, plain, material or weights:FILE")
+      ->capture_default_str();
+  arena_command->add_option("--b", arena.b, "the same")->capture_default_str();
+  arena_command->add_option("--games", arena.games, "an even number is fair")->capture_default_str();
+  arena_command->add_option("--nodes", arena.nodes, "a move, for players that are no level")->capture_default_str();
+  arena_command->add_option("--random-plies", arena.random_plies, "before each game")->capture_default_str();
+  arena_command->add_option("--seed", arena.seed, "of the openings")->capture_default_str();
+
+  DxpOptions dxp;
+  CLI::App* dxp_command = app.add_subcommand("dxp", "Plays over DamExchange (DXP), as server or client");
+  auto* listen_option = dxp_command->add_option("--listen", dxp.listen, "PORT (this machine only) or HOST:PORT");
+  auto* connect_option = dxp_command->add_option("--connect", dxp.connect, "HOST:PORT of the program to play with");
+  listen_option->excludes(connect_option);
+  dxp_command->add_option("--level", dxp.level, "1 to 8; 0: full strength")
+      ->check(CLI::Range(0, 8))
+      ->capture_default_str();
+  dxp_command->add_option("--move-time", dxp.move_time_s, "seconds a move; 0: by the clock that was agreed on")
+      ->check(CLI::Range(0.0, 86'400.0));
+  dxp_command->add_option("--minutes", dxp.minutes, "each, asked for when connecting")->check(CLI::Range(1, 999));
+  dxp_command->add_option("--moves", dxp.moves, "that the minutes are for; 0: the whole game")
+      ->check(CLI::Range(0, 999));
+  dxp_command->add_flag("--dark", dxp.dark, "we play the dark pieces (when connecting)");
+  dxp_command->add_option("--fen", dxp.fen, "position to start from (when connecting)");
+  dxp_command->add_option("--games", dxp.games, "then end; 0: no limit when listening, one when connecting");
+  dxp_command->add_option("--patience", dxp.patience_s, "seconds that the other side may be silent")
+      ->check(CLI::Range(1.0, 1e6));
+  dxp_command->add_option("--pdn", dxp.pdn_file, "file that every game is saved to as it goes");
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -132,6 +196,35 @@ int main(int argc, char** argv) {
     const auto played = play_in_terminal(rules, play, std::cin, std::cout);
     return played ? 0 : complain(played.error(), failed);
   }
-  if (hub_command->parsed()) run_hub_engine(std::cin, std::cout);
+  if (train_command->parsed()) {
+    const auto trained = train(training, std::cerr);
+    return trained ? 0 : complain(trained.error(), failed);
+  }
+  if (check_command->parsed()) {
+    const auto right = check_positions(rules, file, most_leaves, std::cout);
+    return !right ? complain(right.error(), failed) : *right ? 0 : failed;
+  }
+  if (pdn_command->parsed()) {
+    const auto written = rewrite_pdn(file, std::cout);
+    return written ? 0 : complain(written.error(), failed);
+  }
+  if (arena_command->parsed()) {
+    const auto measured = run_arena(arena, std::cout, std::cerr);
+    return measured ? 0 : complain(measured.error(), wrong_usage);
+  }
+  if (dxp_command->parsed()) {
+    if (dxp.listen.empty() == dxp.connect.empty()) {
+      return complain({ErrorCode::invalid_argument, "dxp needs --listen PORT or --connect HOST:PORT"}, wrong_usage);
+    }
+    const auto played = run_dxp(dxp, std::cout, std::cerr);
+    return played ? 0 : complain(played.error(), failed);
+  }
+  if (hub_command->parsed()) {
+    std::optional<EndgameTables> endgames;
+    run_hub_engine(std::cin, std::cout, [&]() -> const EndgameTables* {
+      endgames = EndgameTables::load_or_generate();
+      return &*endgames;
+    });
+  }
   return 0;
 }

@@ -7,7 +7,7 @@ namespace counterpart {
 namespace {
 
 // # stands for the squares.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 37> sentences{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 38> sentences{{
     {"no_change", "Nothing has moved. It is still your turn."},
     {"not_your_turn", "It is not your turn. Please put the piece on # back."},
     {"must_capture", "You can capture a piece, so you must. Look at the piece on #."},
@@ -45,6 +45,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 37> sentence
     {"you_begin", "Let us play. You begin."},
     {"crowned", "Your man on # is a king now."},
     {"backward_capture", "Yes, a man may capture backwards too."},
+    {"majority", "One must always take as many pieces as possible, so it had to be the piece on #."},
 }};
 
 }  // namespace

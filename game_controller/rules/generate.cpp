@@ -20,10 +20,6 @@ struct Board {
   }
 };
 
-constexpr bool is_forward(Side side, int direction) {
-  return (side == Side::light) == (direction < down_left);
-}
-
 // What one side sees; `open` is where nothing stands.
 struct View {
   Bits men;

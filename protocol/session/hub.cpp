@@ -94,7 +94,7 @@ void Hub::note_refusal(const Error& why) {
   last_refusal_ = why;
   if (why.message == last_reported_refusal_) return;
   last_reported_refusal_ = why.message;
-  inbound_.push_back(PeerLeft{0, why});
+  inbound_.push_back(PeerLeft{0, why, false});
 }
 
 FrameParser& Hub::parser(ConnectionId connection) {
@@ -132,7 +132,7 @@ void Hub::fail(ConnectionId id, Connection& connection, const Error& error, std:
 }
 
 // The connection no longer carries its session; the session waits for another one.
-void Hub::detach(ConnectionId id, Connection& connection, const Error& why, std::int64_t now_ns) {
+void Hub::detach(ConnectionId id, Connection& connection, const Error& why, std::int64_t now_ns, bool said_goodbye) {
   const bool was_open = connection.stage == Stage::open;
   if (connection.stage == Stage::closing) return;
   Peer* peer = peer_of(connection);
@@ -148,15 +148,15 @@ void Hub::detach(ConnectionId id, Connection& connection, const Error& why, std:
   slot = 0;
   if (!main) return;
   peer->away_since_ns = now_ns;
-  inbound_.push_back(PeerLeft{peer->id, why});
+  inbound_.push_back(PeerLeft{peer->id, why, said_goodbye});
   if (peer->video_connection != 0) drop(peer->video_connection, why, now_ns);
 }
 
 // Ends a connection without a word.
-void Hub::drop(ConnectionId id, const Error& why, std::int64_t now_ns) {
+void Hub::drop(ConnectionId id, const Error& why, std::int64_t now_ns, bool said_goodbye) {
   const auto found = connections_.find(id);
   if (found == connections_.end()) return;
-  detach(id, found->second, why, now_ns);
+  detach(id, found->second, why, now_ns, said_goodbye);
   found->second.stage = Stage::closing;
   found->second.urgent.clear();
   found->second.closing_since_ns = now_ns;
@@ -185,7 +185,7 @@ void Hub::end_session(Peer& peer, const Error& why, std::int64_t now_ns) {
   if (const auto found = connections_.find(main); found != connections_.end()) {
     fail(main, found->second, why, now_ns);
   } else {
-    inbound_.push_back(PeerLeft{id, why});
+    inbound_.push_back(PeerLeft{id, why, false});
   }
   drop(video, why, now_ns);
   forget_peer(id);

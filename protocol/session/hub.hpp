@@ -135,8 +135,9 @@ class Hub {
   ConnectionId add_connection(std::int64_t now_ns);
   void say(Connection& connection, const Message& message);
   void fail(ConnectionId id, Connection& connection, const Error& error, std::int64_t now_ns);
-  void drop(ConnectionId id, const Error& why, std::int64_t now_ns);
-  void detach(ConnectionId id, Connection& connection, const Error& why, std::int64_t now_ns);
+  void drop(ConnectionId id, const Error& why, std::int64_t now_ns, bool said_goodbye = false);
+  void detach(ConnectionId id, Connection& connection, const Error& why, std::int64_t now_ns,
+              bool said_goodbye = false);
   void forget_peer(PeerId id);
   void end_session(Peer& peer, const Error& why, std::int64_t now_ns);
   void push(Peer& peer, const Outgoing& message, std::int64_t now_ns);

@@ -177,7 +177,7 @@ void Hub::attach(ConnectionId id, Connection& connection, Peer& peer, bool resum
   Dial& dial = connection.lane == LaneName::main ? main_dial_ : video_dial_;
   dial.wait_ns = 0;
   if (connection.lane == LaneName::video) return;
-  if (before != 0) inbound_.push_back(PeerLeft{peer.id, {ErrorCode::closed, "the peer has connected again"}});
+  if (before != 0) inbound_.push_back(PeerLeft{peer.id, {ErrorCode::closed, "the peer has connected again"}, false});
   PeerJoined joined;
   joined.peer = peer.id;
   joined.role = peer.role;

@@ -96,8 +96,10 @@ Result<void> Hub::on_open_message(ConnectionId id, Connection& connection, const
     }
     case MessageType::bye: {
       const PeerId gone = peer.id;
+      const ConnectionId main = peer.main_connection;
       const ConnectionId video = peer.video_connection;
-      drop(id, {ErrorCode::closed, std::get<Bye>(message).reason}, now_ns);
+      // It may come on either lane first; the program hears of it once.
+      drop(main, {ErrorCode::closed, std::get<Bye>(message).reason}, now_ns, true);
       drop(video, {ErrorCode::closed, "the session is over"}, now_ns);
       forget_peer(gone);
       return {};

@@ -27,9 +27,11 @@ struct PeerJoined {
   bool lockstep = false;  // both sides asked for it
 };
 
+// May come a second time for a peer that is away: when its session is given up.
 struct PeerLeft {
   PeerId peer = 0;
   Error reason;
+  bool said_goodbye = false;  // it ended its session with BYE; false: the link was lost, it may resume
 };
 
 struct Received {

@@ -20,7 +20,7 @@ struct Grasp {
   std::vector<Point3>
       path_B;  // where the foot of the piece goes: hops in order, the last is where it stays; z = 0 is the board
   Hand hand = Hand::any;
-  std::string style;      // "" (as a player does), "slam", "hesitant"
+  std::string style;      // "" (as a player does), "slam", "hesitant"; without a piece "point": hold there for a second
   double duration_s = 0;  // 0: as long as a person would take
 
   friend bool operator==(const Grasp&, const Grasp&) = default;
@@ -40,7 +40,7 @@ struct Navigate {
   std::string place;           // "entrance", "chair", "seat" (walk to the chair and sit), "away"; empty: the path
   std::vector<Point3> path_B;  // floor points, z ignored
   double heading_rad = 0;      // at the end of a path: angle of the facing direction from B's x axis, towards y
-  std::string gait = "walk";   // "walk", "hurry"
+  std::string gait = "walk";   // "walk", "hurry", "instant": be there at once
 
   friend bool operator==(const Navigate&, const Navigate&) = default;
 };

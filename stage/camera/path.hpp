@@ -8,8 +8,8 @@
 namespace counterpart::stage {
 
 struct CameraPath {
-  Eigen::Vector3d eye_B{0.10, 0.74, 0.62};
-  Eigen::Vector3d target_B{0.0, -0.20, 0.10};
+  Eigen::Vector3d eye_B{0.10, 0.82, 0.66};
+  Eigen::Vector3d target_B{0.0, -0.20, 0.15};
   double orbit_rad = 0;       // to and fro round the target, each side
   double orbit_period_s = 16;
   double shake_m = 0;         // of a hand-held camera, standard deviation

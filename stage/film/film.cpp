@@ -9,6 +9,7 @@ namespace counterpart::stage {
 Film::Film(const Scenario& scenario, std::unique_ptr<Room> room)
     : scenario_(scenario), room_(std::move(room)), world_(starting_world(scenario.board)), player_(scenario.player) {
   world_.player_present = scenario.player_present;
+  if (scenario.no_pieces) world_.pieces.clear();
 }
 
 Result<Film> Film::begin(const Scenario& scenario) {
@@ -35,6 +36,7 @@ Shot Film::next() {
   Truth& truth = shot.truth;
   truth.stamp = {next_frame_, std::llround(t_s * 1e9)};
   truth.view = view_;
+  truth.playing_surface_m = scenario_.board.squares * scenario_.board.square_size_m;
   truth.occupancy = occupancy_of(world_);
   const Hidden hidden = hidden_shares(world_, view_);
   truth.hand_share = hidden.surface_by_arm;

@@ -15,6 +15,7 @@ struct Truth {
   FrameStamp stamp;
   View view;
   std::string occupancy;  // of the real pieces, see occupancy_of
+  double playing_surface_m = 0;  // a side of the board's playing surface
   double hand_share = 0;  // of the playing surface, hidden by the player's arm
   double edges_hidden = 0;  // share of the outline's and the grid's length in the picture hidden by arm or pieces, or outside it
   double motion_px = 0;   // how far the board's corners moved since the frame before, the mean of four

@@ -35,6 +35,7 @@ std::string truth_line(const Truth& truth) {
                                     {"capture_ns", truth.stamp.capture_ns},
                                     {"p_CB", pose.p},
                                     {"q_CB", pose.q},
+                                    {"playing_surface_m", truth.playing_surface_m},
                                     {"intrinsics", to_json(truth.view.intrinsics)},
                                     {"occupancy", truth.occupancy},
                                     {"hand_share", truth.hand_share},

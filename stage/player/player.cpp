@@ -9,8 +9,9 @@
 namespace counterpart::stage {
 namespace {
 
-constexpr double kReach_s = 0.6;
-constexpr double kCarry_s = 0.6;
+constexpr double kReach_s = 0.35;
+constexpr double kFar_s_m = 0.7;  // longer over longer ways
+constexpr double kCarry_s = 0.5;
 constexpr double kWithdraw_s = 0.5;
 constexpr double kFingers_s = 0.08;   // closing or opening them
 constexpr double kPatience_s = 10.0;  // then he believes the mirror more than his memory
@@ -120,8 +121,8 @@ bool Player::play_illegally(const World& world) {
   const bool two = planned.kind == IllegalKind::two_pieces;
   const int rows = planned.kind == IllegalKind::backwards ? -1 : planned.kind == IllegalKind::too_far ? 2 : two ? 1 : 0;
   const int cols = planned.kind == IllegalKind::backwards || two ? 1 : 2;
-  std::vector<std::pair<int, int>> chosen;  // piece, square
-  for (std::size_t i = 0; i < world.pieces.size() && chosen.size() < (two ? 2u : 1u); ++i) {
+  std::vector<std::pair<int, int>> chosen;                                                  // piece, square
+  for (std::size_t i = world.pieces.size(); i-- > 0 && chosen.size() < (two ? 2u : 1u);) {  // from the front row
     if (world.pieces[i].square == 0 || world.pieces[i].king) continue;
     const Cell from = cell_of_square(world.pieces[i].square, n);
     for (const int side : {-cols, cols}) {
@@ -194,9 +195,8 @@ void Player::crown_kings(const BoardState& state, const World& world) {
   for (std::size_t i = 0; i < state.squares.size(); ++i) {
     const int piece = state.squares[i] == king ? piece_on(world, static_cast<int>(i) + 1) : -1;
     if (piece < 0 || world.pieces[static_cast<std::size_t>(piece)].king) continue;
-    const auto spare = std::find_if(world.pieces.begin(), world.pieces.end(), [](const RealPiece& p) {
-      return p.square == 0 && p.p_B.z() > -1;
-    });
+    const auto spare = std::find_if(world.pieces.begin(), world.pieces.end(),
+                                    [](const RealPiece& p) { return p.square == 0 && p.p_B.z() > -1; });
     if (spare == world.pieces.end()) return;  // nothing left to crown with; the game knows that it is a king
     const RealPiece& crowned = world.pieces[static_cast<std::size_t>(piece)];
     reach_for(world, static_cast<int>(spare - world.pieces.begin()));
@@ -216,7 +216,7 @@ void Player::reach_for(const World& world, int piece) {
   const RealPiece& target = world.pieces[static_cast<std::size_t>(piece)];
   Stroke stroke;
   stroke.to_B = target.p_B + Eigen::Vector3d(0, 0, grip_height_m(world.board));
-  stroke.duration_s = kReach_s;
+  stroke.duration_s = kReach_s + kFar_s_m * (stroke.to_B - hand_after_).norm();
   stroke.arc_m = 0.05;
   stroke.end = StrokeEnd::take;
   stroke.piece = piece;
@@ -232,7 +232,7 @@ void Player::carry(const World& world, int piece, const std::vector<int>& path) 
     Stroke stroke;
     stroke.foot_B = {centre[0] + random(-off, off), centre[1] + random(-off, off), 0};
     stroke.to_B = stroke.foot_B + Eigen::Vector3d(0, 0, grip_height_m(world.board));
-    stroke.duration_s = i == 1 ? kCarry_s : 0.4;
+    stroke.duration_s = i == 1 ? kCarry_s + kFar_s_m * (stroke.to_B - hand_after_).norm() : 0.4;
     stroke.arc_m = 0.045;
     stroke.piece = piece;
     stroke.square = path[i];
@@ -249,7 +249,7 @@ void Player::take_off(const World& world, int piece) {
   Stroke stroke;
   stroke.foot_B = place_beside_board(world.board, places_used_++);
   stroke.to_B = stroke.foot_B + Eigen::Vector3d(0, 0, grip_height_m(world.board));
-  stroke.duration_s = kCarry_s;
+  stroke.duration_s = kCarry_s + kFar_s_m * (stroke.to_B - hand_after_).norm();
   stroke.arc_m = 0.06;
   stroke.end = StrokeEnd::put_down;
   stroke.piece = piece;

@@ -1,12 +1,12 @@
 #include "stage/programs/serve.hpp"
 
-#include <unistd.h>
-
 #include <chrono>
 #include <fstream>
+#include <set>
 #include <thread>
 
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include "stage/film/sequence.hpp"
 
@@ -44,7 +44,7 @@ class Broadcast {
       if (const auto* joined = std::get_if<PeerJoined>(&inbound)) {
         on_joined(*joined);
       } else if (const auto* left = std::get_if<PeerLeft>(&inbound)) {
-        --peers_;
+        peers_.erase(left->peer);
         spdlog::info("a peer left: {}", left->reason.message);
       } else if (const auto* received = std::get_if<Received>(&inbound)) {
         on_message(received->message);
@@ -52,7 +52,7 @@ class Broadcast {
     }
   }
 
-  bool watched() const { return peers_ > 0; }
+  bool watched() const { return !peers_.empty(); }
   bool last_is_done() const { return last_done_; }
   std::uint64_t sent() const { return sent_; }
 
@@ -73,8 +73,9 @@ class Broadcast {
 
  private:
   void on_joined(const PeerJoined& joined) {
-    ++peers_;
+    peers_.insert(joined.peer);
     spdlog::info("{} joined{}", joined.software.empty() ? "a peer" : joined.software, joined.resumed ? " again" : "");
+    if (joined.resumed) return;  // the link sends again what was lost
     intrinsics_ = film_.scenario().intrinsics;
     if (sent_ > 0) intrinsics_ = shot_.truth.view.intrinsics;
     endpoint_.send(joined.peer, intrinsics_);
@@ -95,7 +96,7 @@ class Broadcast {
   std::ofstream truth_;
   Intrinsics intrinsics_;
   Shot shot_;
-  int peers_ = 0;
+  std::set<PeerId> peers_;  // those who are connected
   bool last_done_ = true;
   std::uint64_t sent_ = 0;
 };

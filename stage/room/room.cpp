@@ -7,31 +7,20 @@
 #include "stage/room/arm.hpp"
 #include "stage/room/surfaces.hpp"
 #include "stage/room/textures.hpp"
+#include "vhd_renderer/draw/piece_shape.hpp"
 
 namespace counterpart::stage {
 namespace {
 
 constexpr float kTableX_m = 1.3f;
-constexpr float kTableNearY_m = 0.52f;   // the real player's edge
-constexpr float kTableFarY_m = -0.42f;   // the virtual player's edge
+constexpr float kTableNearY_m = 0.52f;  // the real player's edge
+constexpr float kTableFarY_m = -0.42f;  // the virtual player's edge
 constexpr float kTableThickness_m = 0.03f;
 constexpr float kFloorZ_m = -0.755f;
 constexpr float kWallY_m = -2.3f;
 
 Eigen::Affine3f at(float x, float y, float z) {
   return Eigen::Affine3f(Eigen::Translation3f(x, y, z));
-}
-
-// A turned disc: rounded rims, and a ring cut into each face as draughts have.
-MeshData piece_mesh(const BoardGeometry& board) {
-  const auto r = static_cast<float>(board.piece_radius_m);
-  const auto h = static_cast<float>(board.piece_height_m);
-  const std::vector<Eigen::Vector2f> profile{{0.92f * r, 0},           {0.985f * r, 0.08f * h}, {r, 0.25f * h},
-                                             {r, 0.75f * h},           {0.985f * r, 0.92f * h}, {0.93f * r, h},
-                                             {0.78f * r, h},           {0.78f * r, h},          {0.72f * r, 0.84f * h},
-                                             {0.72f * r, 0.84f * h},   {0.52f * r, 0.84f * h},  {0.52f * r, 0.84f * h},
-                                             {0.46f * r, 0.95f * h},   {0.46f * r, 0.95f * h},  {0, 0.95f * h}};
-  return lathe_mesh(profile, 32);
 }
 
 // The four upright sides of a box: its top and bottom are not seen.
@@ -77,8 +66,12 @@ Result<void> Room::State::build() {
   const auto thickness = static_cast<float>(board.thickness_m);
 
   std::vector<SurfaceId> surfaces;
-  for (const auto& [glsl, lit] : {std::pair{board_surface(), true}, {table_surface(), true}, {floor_surface(), false},
-                                  {wall_surface(), false}, {wooden_piece_surface(), true}, {skin_surface(), true}}) {
+  for (const auto& [glsl, lit] : {std::pair{board_surface(), true},
+                                  {table_surface(), true},
+                                  {floor_surface(), false},
+                                  {wall_surface(), false},
+                                  {wooden_piece_surface(), true},
+                                  {skin_surface(), true}}) {
     const Result<SurfaceId> surface = r.add_surface(glsl, lit);
     if (!surface) return tl::make_unexpected(surface.error());
     surfaces.push_back(*surface);
@@ -120,17 +113,40 @@ Result<void> Room::State::build() {
   MeshData wall_mesh = plane_mesh(7.f, 2.6f, 14, 6);
   const std::vector<Piece> furniture{
       {board_mesh, surfaces[0], grain, at(0, 0, 0), false, 0.10f, 40, {1, 1, 1}},
-      {skirt_mesh({side, side, thickness}), SurfaceId::lit, grain, at(0, 0, -thickness / 2 - 0.0002f), true, 0.1f, 30,
+      {skirt_mesh({side, side, thickness}),
+       SurfaceId::lit,
+       grain,
+       at(0, 0, -thickness / 2 - 0.0002f),
+       true,
+       0.1f,
+       30,
        {0.13f, 0.06f, 0.03f}},
-      {plane_mesh(kTableX_m, table_y, 26, 20), surfaces[1], oak, at(0, table_middle, -thickness), false, 0.10f, 28,
+      {plane_mesh(kTableX_m, table_y, 26, 20),
+       surfaces[1],
+       oak,
+       at(0, table_middle, -thickness),
+       false,
+       0.10f,
+       28,
        {1, 1, 1}},
-      {skirt_mesh({kTableX_m, table_y, kTableThickness_m}), SurfaceId::lit, oak,
-       at(0, table_middle, -thickness - kTableThickness_m / 2 - 0.0005f), false, 0.05f, 20, {0.8f, 0.75f, 0.7f}},
+      {skirt_mesh({kTableX_m, table_y, kTableThickness_m}),
+       SurfaceId::lit,
+       oak,
+       at(0, table_middle, -thickness - kTableThickness_m / 2 - 0.0005f),
+       false,
+       0.05f,
+       20,
+       {0.8f, 0.75f, 0.7f}},
       {plane_mesh(7.f, 5.f, 28, 20), surfaces[2], parquet, at(0, kWallY_m + 2.5f, kFloorZ_m), false, 0, 1, {1, 1, 1}},
-      {wall_mesh, surfaces[3], wall,
+      {wall_mesh,
+       surfaces[3],
+       wall,
        at(0, kWallY_m, kFloorZ_m + 1.3f) * Eigen::AngleAxisf(EIGEN_PI, Eigen::Vector3f::UnitZ()) *
            Eigen::AngleAxisf(static_cast<float>(EIGEN_PI) / 2, Eigen::Vector3f::UnitX()),
-       false, 0, 1, {1, 1, 1}},
+       false,
+       0,
+       1,
+       {1, 1, 1}},
   };
   for (const Piece& piece : furniture) {
     Result<DrawItem> item = add(piece.mesh, piece.surface, piece.texture, piece.X_BO);
@@ -155,13 +171,16 @@ Result<void> Room::State::build() {
   };
   const auto radius = static_cast<float>(board.piece_radius_m);
   const Eigen::Vector3f shirt(0.09f, 0.15f, 0.26f);
-  Result<void> made = movable(pieces, piece_mesh(board), surfaces[4], grain, {0.085f, 0.032f, 0.016f}, 0.22f, 36);
-  if (made) made = movable(hand, blended(hand_capsules(radius), 0.010f, 0.0048f), surfaces[5], TextureId::white,
-                           {0.62f, 0.36f, 0.26f}, 0.10f, 14);
-  if (made) made = movable(forearm, sleeve_mesh(static_cast<float>(kForearm_m) - 0.02f, 0.056f, 0.038f), SurfaceId::lit,
-                           cloth, shirt, 0.01f, 8);
-  if (made) made = movable(upper_arm, sleeve_mesh(static_cast<float>(kUpperArm_m) + 0.03f, 0.066f, 0.056f),
-                           SurfaceId::lit, cloth, shirt, 0.01f, 8);
+  Result<void> made = movable(pieces, piece_shape(board, 28), surfaces[4], grain, {0.085f, 0.032f, 0.016f}, 0.22f, 36);
+  if (made)
+    made = movable(hand, blended(hand_capsules(radius), 0.010f, 0.0048f), surfaces[5], TextureId::white,
+                   {0.62f, 0.36f, 0.26f}, 0.10f, 14);
+  if (made)
+    made = movable(forearm, sleeve_mesh(static_cast<float>(kForearm_m) - 0.02f, 0.056f, 0.038f), SurfaceId::lit, cloth,
+                   shirt, 0.01f, 8);
+  if (made)
+    made = movable(upper_arm, sleeve_mesh(static_cast<float>(kUpperArm_m) + 0.03f, 0.066f, 0.056f), SurfaceId::lit,
+                   cloth, shirt, 0.01f, 8);
   forearm.material.double_sided = true;
   upper_arm.material.double_sided = true;
   return made;
@@ -188,14 +207,14 @@ std::vector<DrawItem> Room::State::items(const World& world) const {
     X_BO.rotate(Eigen::AngleAxisf(static_cast<float>(piece.turn_rad), Eigen::Vector3f::UnitZ()));
     standing.X_BO.push_back(X_BO);
     if (piece.king) {
-      standing.X_BO.push_back(Eigen::Affine3f(Eigen::Translation3f(0, 0, static_cast<float>(world.board.piece_height_m))) *
-                              X_BO);
+      standing.X_BO.push_back(
+          Eigen::Affine3f(Eigen::Translation3f(0, 0, static_cast<float>(world.board.piece_height_m))) * X_BO);
     }
   }
   if (world.player_present) {
     const ArmPose pose = arm_for(world.hand.pinch_B);
-    for (const auto& [item, X] : {std::pair{&hand, &pose.X_BHand}, {&forearm, &pose.X_BForearm},
-                                  {&upper_arm, &pose.X_BUpperArm}}) {
+    for (const auto& [item, X] :
+         {std::pair{&hand, &pose.X_BHand}, {&forearm, &pose.X_BForearm}, {&upper_arm, &pose.X_BUpperArm}}) {
       items.push_back(*item);
       items.back().X_BO = {Eigen::Affine3f(X->cast<float>())};
     }

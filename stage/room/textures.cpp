@@ -38,7 +38,8 @@ cv::Mat wood(int width, int height, const Eigen::Vector3f& light, const Eigen::V
       if (pore.at<float>(y, x) > 0.93f) late += 0.25f;
       late = std::clamp(late, 0.f, 1.f);
       const Eigen::Vector3f colour = light + late * (dark - light);
-      rgb.at<cv::Vec3b>(y, x) = {cv::saturate_cast<std::uint8_t>(colour.x()), cv::saturate_cast<std::uint8_t>(colour.y()),
+      rgb.at<cv::Vec3b>(y, x) = {cv::saturate_cast<std::uint8_t>(colour.x()),
+                                 cv::saturate_cast<std::uint8_t>(colour.y()),
                                  cv::saturate_cast<std::uint8_t>(colour.z())};
     }
   }
@@ -48,11 +49,12 @@ cv::Mat wood(int width, int height, const Eigen::Vector3f& light, const Eigen::V
 void rectangle(cv::Mat& rgb, double x0, double y0, double x1, double y1, const cv::Scalar& colour) {
   // Shares of the picture, so that its size does not matter.
   cv::rectangle(rgb, cv::Point(static_cast<int>(x0 * rgb.cols), static_cast<int>(y0 * rgb.rows)),
-                cv::Point(static_cast<int>(x1 * rgb.cols) - 1, static_cast<int>(y1 * rgb.rows) - 1), colour, cv::FILLED);
+                cv::Point(static_cast<int>(x1 * rgb.cols) - 1, static_cast<int>(y1 * rgb.rows) - 1), colour,
+                cv::FILLED);
 }
 
 void books(cv::Mat& rgb, double x0, double y0, double x1, double y1, cv::RNG& random) {
-  static const cv::Scalar covers[] = {{120, 44, 38}, {38, 60, 92}, {46, 84, 62}, {168, 140, 92}, {70, 56, 70},
+  static const cv::Scalar covers[] = {{120, 44, 38},   {38, 60, 92}, {46, 84, 62},  {168, 140, 92}, {70, 56, 70},
                                       {188, 176, 150}, {52, 50, 48}, {140, 92, 50}, {96, 104, 110}};
   double x = x0;
   while (x < x1 - 0.004) {
@@ -79,13 +81,14 @@ Texture planks_texture(int width, int height, int planks, const Eigen::Vector3f&
                        std::uint64_t seed) {
   cv::RNG random(seed + 1);
   cv::Mat rgb(height, width, CV_8UC3);
-  const int tall = height / planks;
   for (int plank = 0; plank < planks; ++plank) {
+    const int top = plank * height / planks;
+    const int tall = (plank + 1) * height / planks - top;
     cv::Mat one = wood(width, tall, light, dark, random) * random.uniform(0.82, 1.06);
     cv::line(one, {0, 0}, {width, 0}, cv::Scalar(dark.x(), dark.y(), dark.z()) * 0.45, std::max(1, tall / 48));
     const int joint = random.uniform(0, width);
     cv::line(one, {joint, 0}, {joint, tall}, cv::Scalar(dark.x(), dark.y(), dark.z()) * 0.5, 1);
-    one.copyTo(rgb(cv::Rect(0, plank * tall, width, tall)));
+    one.copyTo(rgb(cv::Rect(0, top, width, tall)));
   }
   return to_texture(rgb);
 }

@@ -45,7 +45,7 @@ class LineNotes : public nlohmann::json_sax<json> {
   bool string(string_t&) override { return note(); }
   bool binary(binary_t&) override { return note(); }
   bool start_object(std::size_t) override {
-    note();
+    mark();
     levels_.push_back({false, 0, ""});
     return true;
   }
@@ -56,7 +56,7 @@ class LineNotes : public nlohmann::json_sax<json> {
   }
   bool end_object() override { return leave(); }
   bool start_array(std::size_t) override {
-    note();
+    mark();
     levels_.push_back({true, 0, ""});
     return true;
   }
@@ -82,16 +82,20 @@ class LineNotes : public nlohmann::json_sax<json> {
     for (const Level& level : levels_) result += "/" + (level.array ? std::to_string(level.index) : level.key);
     return result;
   }
-  bool note() {
-    if (!levels_.empty() && levels_.back().array) {
-      line_of_[path()] = line_;
-      ++levels_.back().index;
-    }
+  void mark() {
+    if (!levels_.empty() && levels_.back().array) line_of_[path()] = line_;
+  }
+  bool next() {
+    if (!levels_.empty() && levels_.back().array) ++levels_.back().index;
     return true;
+  }
+  bool note() {
+    mark();
+    return next();
   }
   bool leave() {
     levels_.pop_back();
-    return true;
+    return next();
   }
 
   const int& line_;

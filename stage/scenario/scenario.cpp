@@ -51,7 +51,8 @@ class Node {
   Result<void> array(const Reader& element) const {
     if (!value_.is_array()) return complain("an array");
     for (std::size_t i = 0; i < value_.size(); ++i) {
-      if (const Result<void> read = element(Node(value_[i], path_ + "/" + std::to_string(i), source_)); !read) return read;
+      if (const Result<void> read = element(Node(value_[i], path_ + "/" + std::to_string(i), source_)); !read)
+        return read;
     }
     return {};
   }
@@ -102,7 +103,8 @@ class Node {
 
   template <class Numbers>
   Result<void> numbers(Numbers& target, std::size_t count, double low, double high) const {
-    if (!value_.is_array() || value_.size() != count) return complain("an array of " + std::to_string(count) + " numbers");
+    if (!value_.is_array() || value_.size() != count)
+      return complain("an array of " + std::to_string(count) + " numbers");
     for (std::size_t i = 0; i < count; ++i) {
       double number_read = 0;
       const Node element(value_[i], path_ + "/" + std::to_string(i), source_);
@@ -164,7 +166,8 @@ Reader camera_keys(Scenario& s) {
       {"width", whole(k.width, 160, 1920)},
       {"height", whole(k.height, 120, 1080)},
       {"fps", number(s.fps, 1, 120)},
-      {"focal_px", [&k](const Node& node) {
+      {"focal_px",
+       [&k](const Node& node) {
          const Result<void> read = node.number(k.fx, 50, 10000);
          k.fy = k.fx;
          return read;
@@ -183,7 +186,8 @@ Reader camera_keys(Scenario& s) {
 
 Reader board_keys(Scenario& s) {
   return object({
-      {"squares", [&s](const Node& node) {
+      {"squares",
+       [&s](const Node& node) {
          const Result<void> read = node.whole(s.board.squares, 8, 10);
          if (read && s.board.squares == 9) return Result<void>(node.complain("8 or 10"));
          return read;
@@ -191,13 +195,16 @@ Reader board_keys(Scenario& s) {
       {"square_mm", millimetres(s.board.square_size_m, 10, 100)},
       {"border_mm", millimetres(s.board.border_m, 0, 100)},
       {"thickness_mm", millimetres(s.board.thickness_m, 1, 60)},
-      {"piece_diameter_mm", [&s](const Node& node) {
+      {"piece_diameter_mm",
+       [&s](const Node& node) {
          const Result<void> read = node.number(s.board.piece_radius_m, 5, 100);
          s.board.piece_radius_m /= 2000;
          return read;
        }},
       {"piece_height_mm", millimetres(s.board.piece_height_m, 1, 40)},
-      {"played_on", [&s](const Node& node) {
+      {"empty", flag(s.no_pieces)},
+      {"played_on",
+       [&s](const Node& node) {
          return node.choice<SquareColour>(s.board.played_on,
                                           {{"dark", SquareColour::dark}, {"light", SquareColour::light}});
        }},
@@ -208,7 +215,8 @@ Result<void> read_illegal_move(const Node& node, Scenario& s) {
   IllegalMove illegal;
   const Result<void> read = node.object({
       {"at_move", whole(illegal.at_move, 1, 500)},
-      {"kind", [&illegal](const Node& kind) {
+      {"kind",
+       [&illegal](const Node& kind) {
          return kind.choice<IllegalKind>(illegal.kind, {{"backwards", IllegalKind::backwards},
                                                         {"sideways", IllegalKind::sideways},
                                                         {"too_far", IllegalKind::too_far},
@@ -224,7 +232,8 @@ Reader player_keys(Scenario& s) {
       {"present", flag(s.player_present)},
       {"practise", flag(s.player.practise)},
       {"speed", number(s.player.speed, 0.1, 5)},
-      {"illegal_moves", [&s](const Node& node) {
+      {"illegal_moves",
+       [&s](const Node& node) {
          return node.array([&s](const Node& element) { return read_illegal_move(element, s); });
        }},
   });
@@ -264,7 +273,8 @@ Result<Scenario> load_scenario(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream content;
   if (!file || !(content << file.rdbuf())) {
-    return failure(ErrorCode::not_found, "The scenario " + path + " cannot be read; give a JSON file such as those in "
+    return failure(ErrorCode::not_found, "The scenario " + path +
+                                             " cannot be read; give a JSON file such as those in "
                                              "stage/scenarios.");
   }
   Result<Scenario> scenario = parse_scenario(content.str());

@@ -1,4 +1,4 @@
-// What happens on the stage, from a JSON file. docs/scenarios.md describes every key.
+// What happens on the stage, from a JSON file. stage/scenarios holds examples; an unknown key is answered with those there are.
 #pragma once
 
 #include <string>
@@ -20,6 +20,7 @@ struct Scenario {
   double fps = 25;
   Intrinsics intrinsics{1, 720, 576, 610, 610, 359.5, 287.5, {}};
   BoardGeometry board;
+  bool no_pieces = false;  // an empty board
   CameraPath path;
   SensorOptions sensor;
   bool player_present = true;

@@ -39,7 +39,8 @@ TemporaryFolder::~TemporaryFolder() {
 }
 
 Program::Program(const std::string& name, const std::vector<std::string>& arguments) {
-  const std::string path = std::string(COUNTERPART_BIN_DIR) + "/" + name;
+  const bool is_path = name.find('/') != std::string::npos;
+  const std::string path = is_path ? name : std::string(COUNTERPART_BIN_DIR) + "/" + name;
   std::vector<std::string> words{path};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;

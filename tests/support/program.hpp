@@ -26,7 +26,7 @@ class TemporaryFolder {
 // A running program; killed when this object dies.
 class Program {
  public:
-  // name: of a program in build/<preset>/bin.
+  // name: of a program in build/<preset>/bin, or a path.
   Program(const std::string& name, const std::vector<std::string>& arguments);
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;

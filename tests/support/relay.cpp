@@ -20,12 +20,12 @@ struct Pair : std::enable_shared_from_this<Pair> {
       : near(std::move(near_socket)), far(io), silent(is_silent) {}
 
   void pump(tcp::socket& from, tcp::socket& to, std::array<char, 65536>& buffer) {
-    from.async_read_some(asio::buffer(buffer), [self = shared_from_this(), &from, &to, &buffer](error_code error,
-                                                                                                std::size_t count) {
-      if (!error && !self->silent) asio::write(to, asio::buffer(buffer.data(), count), error);
-      if (error) return self->close();
-      self->pump(from, to, buffer);
-    });
+    from.async_read_some(asio::buffer(buffer),
+                         [self = shared_from_this(), &from, &to, &buffer](error_code error, std::size_t count) {
+                           if (!error && !self->silent) asio::write(to, asio::buffer(buffer.data(), count), error);
+                           if (error) return self->close();
+                           self->pump(from, to, buffer);
+                         });
   }
 
   void close() {

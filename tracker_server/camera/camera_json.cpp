@@ -23,8 +23,9 @@ Result<Intrinsics> read_camera_json(const std::filesystem::path& path) {
   if (!file) return failure(ErrorCode::not_found, "Cannot open " + path.string() + ".");
   const auto json = nlohmann::json::parse(file, nullptr, false);
   const auto bad = [&](const std::string& why) {
-    return failure(ErrorCode::bad_format, path.string() + ": " + why +
-                                              "; expected {width, height, fx, fy, cx, cy, dist: [k1, k2, p1, p2, k3]}.");
+    return failure(
+        ErrorCode::bad_format,
+        path.string() + ": " + why + "; expected {width, height, fx, fy, cx, cy, dist: [k1, k2, p1, p2, k3]}.");
   };
   if (!json.is_object()) return bad("not a JSON object");
 

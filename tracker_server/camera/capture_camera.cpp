@@ -27,8 +27,9 @@ Result<std::unique_ptr<Camera>> CaptureCamera::open(const std::string& uri, Capt
       case CaptureKind::film:
         break;
     }
-    return failure(ErrorCode::bad_format, "Cannot read " + uri + " as a video file; it may be cut off or of a format "
-                                          "that FFmpeg does not know.");
+    return failure(ErrorCode::bad_format, "Cannot read " + uri +
+                                              " as a video file; it may be cut off or of a format "
+                                              "that FFmpeg does not know.");
   }
   const double rate = camera->capture_.get(cv::CAP_PROP_FPS);
   if (rate > 0.1 && rate < 1000) camera->frames_per_second_ = rate;

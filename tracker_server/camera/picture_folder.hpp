@@ -1,4 +1,5 @@
-// A folder of PNG or JPEG pictures as a camera: a SEQUENCE, or any pictures in name order.
+// A folder of PNG or JPEG pictures as a camera: a SEQUENCE, or any pictures in name order. It has no clock of its own:
+// the pictures are stamped as if they came at an even rate.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +13,7 @@ class PictureFolder : public Camera {
  public:
   // Fails if there is no picture in it, or if the camera.json beside them is bad.
   [[nodiscard]] static Result<std::unique_ptr<Camera>> open(const std::filesystem::path& folder,
-                                                            double frames_per_second = 25);
+                                                            double frames_per_second = 15);
 
   // A picture that cannot be decoded ends the camera with a failure that names the file.
   [[nodiscard]] Result<std::optional<Frame>> next() override;
@@ -21,7 +22,7 @@ class PictureFolder : public Camera {
  private:
   std::vector<std::filesystem::path> pictures_;
   std::optional<Intrinsics> intrinsics_;
-  double frames_per_second_ = 25;
+  double frames_per_second_ = 15;
   std::size_t position_ = 0;
 };
 

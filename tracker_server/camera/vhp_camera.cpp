@@ -43,15 +43,15 @@ class VhpCamera final : public Camera {
  private:
   void hear(std::int64_t timeout_ns) {
     for (Inbound& inbound : link_->receive(timeout_ns)) {
+      if (const auto* left = std::get_if<PeerLeft>(&inbound)) ended_ = ended_ || left->said_goodbye;
+      if (const auto* joined = std::get_if<PeerJoined>(&inbound); joined != nullptr && !joined->resumed) ended_ = false;
       auto* received = std::get_if<Received>(&inbound);
       if (received == nullptr) continue;  // a lost link comes back by itself
       if (auto* video = std::get_if<VideoFrame>(&received->message)) {
         waiting_.push_back(std::move(*video));
       } else if (const auto* intrinsics = std::get_if<Intrinsics>(&received->message)) {
         intrinsics_ = *intrinsics;
-      } else if (std::holds_alternative<Bye>(received->message)) {
-        ended_ = true;
-      }
+            }
     }
   }
 

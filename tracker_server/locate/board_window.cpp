@@ -38,8 +38,9 @@ class LatticeSampler {
   Eigen::Matrix3d H_;
 };
 
-// The median step across the edge between two squares, positive if the first square of the lattice pattern, (0, 0) and
-// its like, is the lighter. Seven places along the edge: a round piece can spoil the middle three only.
+// The step across the edge between two squares, positive if the first square of the lattice pattern, (0, 0) and its
+// like, is the lighter. Seven places along the edge, of which the third clearest counts: a round piece spoils the
+// middle three, and its height may lean over one more.
 float edge_step(const LatticeSampler& sample, int u, int v, bool along_v) {
   constexpr std::array places = {0.10, 0.18, 0.26, 0.5, 0.74, 0.82, 0.90};
   constexpr double aside = 0.16;
@@ -50,9 +51,9 @@ float edge_step(const LatticeSampler& sample, int u, int v, bool along_v) {
     if (after == unseen || before == unseen) return unseen;
     steps[i] = after - before;
   }
-  std::nth_element(steps.begin(), steps.begin() + steps.size() / 2, steps.end());
-  const float median = steps[steps.size() / 2];
-  return (u + v) % 2 == 0 ? median : -median;
+  std::sort(steps.begin(), steps.end());
+  const float step = steps[3] > 0 ? steps[4] : steps[2];
+  return (u + v) % 2 == 0 ? step : -step;
 }
 
 // Steps across all edges of a range of squares, by the square that lies after the edge.
@@ -104,6 +105,7 @@ BoardWindow measure(const Steps& steps, const Measure& m, int n, int u0, int v0)
   for (int v = v0 + 1; v < v0 + n; ++v)
     for (int u = u0; u < u0 + n; ++u) m.add(inside, steps.top(u, v));
   window.support = inside.mean();
+  window.seen = inside.count / (2.0 * n * (n - 1));
 
   // Along the outermost squares inside, and along the first squares outside.
   std::array<Evidence, 4> rim, beyond;
@@ -118,7 +120,8 @@ BoardWindow measure(const Steps& steps, const Measure& m, int n, int u0, int v0)
     m.add(beyond[3], steps.top(u0 + n, v0 + i));
   }
   window.weakest_side = 1;
-  for (const auto& side : rim) window.weakest_side = std::min(window.weakest_side, side.count < n / 2 ? 0 : side.mean());
+  for (const auto& side : rim)
+    window.weakest_side = std::min(window.weakest_side, side.count < n / 2 ? 0 : side.mean());
   for (const auto& side : beyond)
     if (side.count >= n / 2) window.beyond = std::max(window.beyond, side.mean());
   window.first_light = ((u0 + v0) % 2 == 0) == (m.typical > 0);
@@ -128,7 +131,7 @@ BoardWindow measure(const Steps& steps, const Measure& m, int n, int u0, int v0)
 
 // What a window is worth: all its evidence, less what the pattern shows beyond it.
 double worth(const BoardWindow& window, int n) {
-  return 2.0 * n * (n - 1) * window.support - (n - 1) * std::max(0.0, window.beyond);
+  return 2.0 * n * (n - 1) * window.seen * window.support - (n - 1) * std::max(0.0, window.beyond);
 }
 
 float typical_step(const Steps& steps, int u0, int u1, int v0, int v1) {
@@ -163,10 +166,11 @@ std::optional<BoardWindow> find_board_window(const cv::Mat1b& grey, const Eigen:
   const int middle_u = (u0 + u1) / 2, middle_v = (v0 + v1) / 2;
   for (int v = middle_v - n + 1; v < middle_v; ++v)
     for (int u = middle_u - n + 1; u < middle_u; ++u) {
-      bool seen = true;
+      // One corner may lie outside the picture: the lines that lead to it still tell where.
+      int corners_seen = 0;
       for (int du : {0, n})
-        for (int dv : {0, n}) seen = seen && sample(u + du, v + dv) != unseen;
-      if (!seen) continue;
+        for (int dv : {0, n}) corners_seen += sample(u + du, v + dv) != unseen;
+      if (corners_seen < 3) continue;
       const BoardWindow window = measure(steps, m, n, u, v);
       const double value = worth(window, n);
       if (value > best_worth) {

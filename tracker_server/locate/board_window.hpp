@@ -9,13 +9,14 @@
 namespace counterpart {
 
 struct BoardWindow {
-  int u = 0, v = 0;       // lattice coordinates of the window's first corner
+  int u = 0, v = 0;          // lattice coordinates of the window's first corner
   bool first_light = false;  // whether the square at the first corner is a light one
-  double support = 0;     // -1..1: mean evidence of the pattern inside
-  double weakest_side = 0;  // evidence along the weakest of the four outermost rows and columns
-  double beyond = 0;      // evidence that the pattern goes on beyond the outline, worst side
-  double margin = 0;      // how much better than the best other window, in outermost rows' worth of evidence
-  double contrast = 0;    // grey levels between light and dark squares, typical
+  double seen = 0;           // 0..1: share of its edges that lie in the picture
+  double support = 0;        // -1..1: mean evidence of the pattern inside
+  double weakest_side = 0;   // evidence along the weakest of the four outermost rows and columns
+  double beyond = 0;         // evidence that the pattern goes on beyond the outline, worst side
+  double margin = 0;         // how much better than the best other window, in outermost rows' worth of evidence
+  double contrast = 0;       // grey levels between light and dark squares, typical
 };
 
 // H takes lattice coordinates to pixels of `grey`; the window is sought over the lattice points u0..u1 x v0..v1 and up

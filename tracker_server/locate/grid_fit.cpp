@@ -68,8 +68,8 @@ GridFit fit_grid(const Pyramid& pyramid, const Matrix3d& start, int n, bool firs
     while (reach / (1 << level) > 10 && level + 1 < static_cast<int>(pyramid.levels.size())) ++level;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Vector2d p = apply(H, points[i].m.x(), points[i].m.y());
-      const Vector2d q = apply(H, points[i].m.x() + 0.05 * points[i].along.x(),
-                               points[i].m.y() + 0.05 * points[i].along.y());
+      const Vector2d q =
+          apply(H, points[i].m.x() + 0.05 * points[i].along.x(), points[i].m.y() + 0.05 * points[i].along.y());
       const Vector2d t = (q - p).normalized();
       probes[i] = {Pyramid::to_level(static_cast<float>(p.x()), level),
                    Pyramid::to_level(static_cast<float>(p.y()), level), static_cast<float>(-t.y()),

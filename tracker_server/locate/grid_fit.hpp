@@ -8,9 +8,9 @@
 namespace counterpart {
 
 struct GridFit {
-  Eigen::Matrix3d H;   // board in squares (u, v in 0..n) to pixels
-  double rms_px = 0;   // of the edge points that were used
-  double share = 0;    // of the edge points looked for
+  Eigen::Matrix3d H;  // board in squares (u, v in 0..n) to pixels
+  double rms_px = 0;  // of the edge points that were used
+  double share = 0;   // of the edge points looked for
 };
 
 // first_light: the square at (0, 0) is a light one. Inner lines only: what lies beyond the outline is not known.

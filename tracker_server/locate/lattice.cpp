@@ -15,8 +15,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 
 constexpr float pi = std::numbers::pi_v<float>;
-constexpr float same_direction = 0.35F;   // radians
-constexpr double same_place = 0.22;       // share of the distance to the next lattice point
+constexpr float same_direction = 0.35F;  // radians
+constexpr double same_place = 0.22;      // share of the distance to the next lattice point
 
 float direction_difference(float a, float b) {
   const float d = std::fmod(std::abs(a - b), pi);
@@ -144,8 +144,8 @@ Lattice grow(const std::vector<Saddle>& saddles, const Neighbourhood& space, std
         if (!(spacing > 5 && spacing < 400)) continue;
         // The orientation is compared with the point grown from: it turns slowly over a picture in perspective.
         const bool alternate = (du + dv) % 2 != 0;
-        const std::size_t hit = nearest_to(space, saddles, h.hnormalized(), same_place * spacing, saddles[p.saddle],
-                                           alternate);
+        const std::size_t hit =
+            nearest_to(space, saddles, h.hnormalized(), same_place * spacing, saddles[p.saddle], alternate);
         if (hit == saddles.size() || used[hit]) continue;
         taken[{u, v}] = hit;
         used[hit] = 1;

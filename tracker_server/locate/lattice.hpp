@@ -21,7 +21,8 @@ struct Lattice {
 };
 
 // The lattices with most points first; each saddle belongs to one of them at most. Empty if fewer than min_points meet.
-std::vector<Lattice> grow_lattices(const std::vector<Saddle>& saddles, std::size_t min_points, std::size_t max_lattices);
+std::vector<Lattice> grow_lattices(const std::vector<Saddle>& saddles, std::size_t min_points,
+                                   std::size_t max_lattices);
 
 // Least squares homography, `from` to `to`, at least four points. Coordinates are conditioned inside.
 Eigen::Matrix3d fit_homography(const std::vector<Eigen::Vector2d>& from, const std::vector<Eigen::Vector2d>& to);

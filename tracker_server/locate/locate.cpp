@@ -22,7 +22,7 @@ using Eigen::Vector2d;
 constexpr double least_support = 0.5;
 constexpr double least_side = 0.25;
 constexpr double most_beyond = 0.45;
-constexpr double least_margin = 0.35;
+constexpr double least_margin = 0.2;
 
 bool convincing(const BoardWindow& window) {
   return window.support >= least_support && window.weakest_side >= least_side && window.beyond <= most_beyond &&

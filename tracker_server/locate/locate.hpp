@@ -12,10 +12,10 @@
 namespace counterpart {
 
 struct LocatedBoard {
-  Eigen::Matrix3d H;     // squares (column u, row v from corner 0, in 0..n) to pixels
+  Eigen::Matrix3d H;         // squares (column u, row v from corner 0, in 0..n) to pixels
   bool first_light = false;  // the square at corner 0 is a light one
-  double support = 0;    // 0..1, how clearly the pattern was seen
-  double contrast = 0;   // grey levels between light and dark squares
+  double support = 0;        // 0..1, how clearly the pattern was seen
+  double contrast = 0;       // grey levels between light and dark squares
 
   // Outer corners of the playing surface, clockwise in the picture, the one nearest to the picture's top left first.
   std::array<Eigen::Vector2d, 4> corners(int n) const;

@@ -10,8 +10,8 @@
 namespace counterpart {
 namespace {
 
-constexpr int step = 2;            // pixels, of the second differences
-constexpr float ring_radius = 5;   // pixels
+constexpr int step = 2;           // pixels, of the second differences
+constexpr float ring_radius = 5;  // pixels
 constexpr int ring_samples = 32;
 constexpr int margin = 8;
 constexpr float pi = std::numbers::pi_v<float>;
@@ -62,8 +62,8 @@ bool read_ring(const cv::Mat1f& smooth, Saddle& saddle, float min_strength) {
   float mean = 0;
   for (int i = 0; i < ring_samples; ++i) {
     const float angle = 2 * pi * static_cast<float>(i) / ring_samples;
-    ring[static_cast<std::size_t>(i)] = bilinear(smooth, saddle.p.x + ring_radius * std::cos(angle),
-                                                 saddle.p.y + ring_radius * std::sin(angle));
+    ring[static_cast<std::size_t>(i)] =
+        bilinear(smooth, saddle.p.x + ring_radius * std::cos(angle), saddle.p.y + ring_radius * std::sin(angle));
   }
   const auto [low, high] = std::minmax_element(ring.begin(), ring.end());
   if (*high - *low < min_strength) return false;

@@ -14,10 +14,19 @@ constexpr double whole_radius = 0.45;
 // Octaves of evidence. Empty squares of real boards, wood grain and shadows included, scatter over about one; the
 // weakest piece seen, black on black wood, stands at about one and a half.
 constexpr double least_evidence = 0.9, usual_evidence = 1.3, most_evidence = 2.2;
+constexpr double clear_evidence = 2.7;
 constexpr double undecided = 0.12;
 
-// Two pieces of one colour under one lamp are nearer than this.
+// An empty square is never taken for quieter than these shares of the step between light and dark squares: on a clean,
+// bright board a smear would stand out as much as a piece.
+constexpr float quietest_structure = 1.0F / 60, quietest_difference = 1.0F / 20;
+
+// Pieces of one colour are nearer than this, in the measure of `unlike`.
 constexpr float one_colour = 22;
+
+// A lamp's reflection lights up a whole square; a piece in it still differs from the ground by this share of that.
+constexpr float outshines_glare = 0.5F, glare_share = 0.5F;
+constexpr float glare_from = 25;  // grey levels above the usual ground
 
 float median(std::vector<float>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -39,6 +48,17 @@ Colour median_colour(const std::vector<Colour>& colours) {
     warm.push_back(c.warm_cold);
   }
   return {median(light), median(red), median(warm)};
+}
+
+float square_length(const Colour& c) {
+  return c.light * c.light + c.red_green * c.red_green + c.warm_cold * c.warm_cold;
+}
+
+// How unlike two pieces are: light and shade change a piece's brightness more than its hue.
+float unlike(const Colour& a, const Colour& b) {
+  Colour difference = a - b;
+  difference.light *= 0.6F;
+  return length(difference);
 }
 
 Colour mean_colour(const std::vector<Colour>& colours) {
@@ -68,7 +88,7 @@ struct Zones {
   }
 };
 
-CellLook look_at(const CellPatch& patch, const Zones& zones) {
+CellLook look_at(const CellPatch& patch, const Zones& zones, bool ground_only) {
   CellLook look;
   look.seen = patch.seen;
   if (!patch.seen) return look;
@@ -76,6 +96,7 @@ CellLook look_at(const CellPatch& patch, const Zones& zones) {
   std::vector<Colour> colours;
   for (std::size_t i : zones.corners) colours.push_back(samples[i]);
   look.ground = median_colour(colours);
+  if (ground_only) return look;
   colours.clear();
   int burnt = 0;
   for (std::size_t i : zones.middle) {
@@ -85,14 +106,16 @@ CellLook look_at(const CellPatch& patch, const Zones& zones) {
   look.middle = median_colour(colours);
   look.glare = static_cast<float>(burnt) / static_cast<float>(zones.middle.size());
 
+  // Squares keep the order, so that one root a quantile is enough.
   std::vector<float> steep, different;
+  steep.reserve(zones.whole.size());
+  different.reserve(zones.whole.size());
   for (std::size_t i : zones.whole) {
-    const float across = length(samples[i + 1] - samples[i]), down = length(samples[i + patch_side] - samples[i]);
-    steep.push_back(std::hypot(across, down));
-    different.push_back(length(samples[i] - look.ground));
+    steep.push_back(square_length(samples[i + 1] - samples[i]) + square_length(samples[i + patch_side] - samples[i]));
+    different.push_back(square_length(samples[i] - look.ground));
   }
-  look.structure = quantile(steep, 0.75);
-  look.difference = quantile(different, 0.75);
+  look.structure = std::sqrt(quantile(steep, 0.75));
+  look.difference = std::sqrt(quantile(different, 0.75));
   return look;
 }
 
@@ -113,30 +136,49 @@ void measure_cover(const BoardView& view, std::vector<CellLook>& cells) {
       const int row = static_cast<int>(i) / view.squares, col = static_cast<int>(i) % view.squares;
       if ((row + col) % 2 != parity || !cells[i].seen) continue;
       int other = 0;
-      for (const Colour& sample : view.cells[i].samples) other += length(sample - usual) > tolerance;
+      for (const Colour& sample : view.cells[i].samples) other += square_length(sample - usual) > tolerance * tolerance;
       cells[i].full = static_cast<float>(other) / static_cast<float>(view.cells[i].samples.size());
     }
   }
 }
 
+std::size_t parity_of(std::size_t cell, int squares) {
+  const auto n = static_cast<std::size_t>(squares);
+  return (cell / n + cell % n) % 2;
+}
+
+std::array<Colour, 2> usual_grounds(const std::vector<CellLook>& cells, int squares) {
+  std::array<std::vector<Colour>, 2> grounds;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (cells[i].seen) grounds[parity_of(i, squares)].push_back(cells[i].ground);
+  std::array<Colour, 2> usual;
+  for (std::size_t parity : {0U, 1U})
+    if (!grounds[parity].empty()) usual[parity] = median_colour(grounds[parity]);
+  return usual;
+}
+
+bool only_glare(const CellLook& cell, const Colour& usual_ground) {
+  if (cell.full < glare_share || cell.ground.light - usual_ground.light < glare_from) return false;
+  return length(cell.middle - cell.ground) < outshines_glare * length(cell.ground - usual_ground);
+}
+
 // Octaves by which a square is busier and more different than the quietest of its colour.
-std::vector<float> evidence_of(const std::vector<CellLook>& cells, int squares) {
+std::vector<float> evidence_of(const std::vector<CellLook>& cells, int squares, const std::array<Colour, 2>& usual) {
   std::vector<float> evidence(cells.size(), 0);
-  for (int parity : {0, 1}) {
+  const float step = length(usual[0] - usual[1]);
+  for (std::size_t parity : {0U, 1U}) {
     std::vector<float> structure, difference;
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const int row = static_cast<int>(i) / squares, col = static_cast<int>(i) % squares;
-      if ((row + col) % 2 != parity || !cells[i].seen) continue;
+      if (parity_of(i, squares) != parity || !cells[i].seen) continue;
       structure.push_back(cells[i].structure);
       difference.push_back(cells[i].difference);
     }
     if (structure.empty()) continue;
     // At the start of a game a fifth of the playable squares is empty: the quietest sixth always is.
-    const float quiet_structure = std::max(1.0F, quantile(structure, 0.16));
-    const float quiet_difference = std::max(4.0F, quantile(difference, 0.16));
+    const float quiet_structure = std::max({1.0F, quietest_structure * step, quantile(structure, 0.16)});
+    const float quiet_difference = std::max({4.0F, quietest_difference * step, quantile(difference, 0.16)});
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const int row = static_cast<int>(i) / squares, col = static_cast<int>(i) % squares;
-      if ((row + col) % 2 != parity || !cells[i].seen) continue;
+      if (parity_of(i, squares) != parity || !cells[i].seen || only_glare(cells[i], usual[parity])) continue;
       const float s = std::log2(std::max(cells[i].structure, 0.5F * quiet_structure) / quiet_structure);
       const float d = std::log2(std::clamp(cells[i].difference / quiet_difference, 1.0F, 8.0F));
       evidence[i] = s + 0.4F * d;
@@ -145,10 +187,12 @@ std::vector<float> evidence_of(const std::vector<CellLook>& cells, int squares) 
   return evidence;
 }
 
-// The widest gap between the two groups, within what is sensible.
+// The widest gap between the two groups, within what is sensible. Without a gap, all is one group: if none of it looks
+// clearly like a piece, it is the empty squares.
 double threshold_of(std::vector<float> evidence) {
   std::sort(evidence.begin(), evidence.end());
-  double best_gap = 0.25, threshold = usual_evidence;
+  double best_gap = 0.25;
+  double threshold = evidence.empty() || evidence.back() > most_evidence ? usual_evidence : most_evidence;
   for (std::size_t i = 0; i + 1 < evidence.size(); ++i) {
     const double low = std::max<double>(evidence[i], least_evidence - 0.4);
     const double high = std::min<double>(evidence[i + 1], most_evidence + 0.4);
@@ -159,35 +203,53 @@ double threshold_of(std::vector<float> evidence) {
       threshold = middle;
     }
   }
+  // One or two squares that are hardly out of the ordinary are folds, stains or reflections rather than a game.
+  const auto above = std::count_if(evidence.begin(), evidence.end(), [&](float e) { return e > threshold; });
+  if (above <= 2 && !evidence.empty() && evidence.back() < clear_evidence) threshold = clear_evidence;
   return threshold;
 }
 
-// Splits colours in two by the farthest pair and a few rounds of means.
-void learn_piece_colours(const std::vector<Colour>& pieces, double board_middle, BoardLook& look) {
-  if (pieces.empty()) return;
-  const Colour all = mean_colour(pieces);
-  const auto farther = [](const Colour& from) {
-    return [from](const Colour& a, const Colour& b) { return length(a - from) < length(b - from); };
-  };
-  Colour a = *std::max_element(pieces.begin(), pieces.end(), farther(all));
-  Colour b = *std::max_element(pieces.begin(), pieces.end(), farther(a));
+struct ColourSplit {
+  Colour a, b;
+  float scatter = 0;  // mean distance of a piece from its group's mean
+  bool two = false;
+};
+
+// In two groups, begun from this piece and the one most unlike it, and evened out by a few rounds of means.
+ColourSplit split_from(const std::vector<Colour>& pieces, const Colour& seed) {
+  ColourSplit split;
+  split.a = seed;
+  split.b = *std::max_element(pieces.begin(), pieces.end(),
+                              [&](const Colour& p, const Colour& q) { return unlike(p, seed) < unlike(q, seed); });
   std::vector<Colour> near_a, near_b;
-  for (int round = 0; round < 8; ++round) {
+  for (int round = 0; round < 5; ++round) {
     near_a.clear();
     near_b.clear();
-    for (const Colour& p : pieces) (length(p - a) <= length(p - b) ? near_a : near_b).push_back(p);
+    for (const Colour& p : pieces) (unlike(p, split.a) <= unlike(p, split.b) ? near_a : near_b).push_back(p);
     if (near_a.empty() || near_b.empty()) break;
-    a = mean_colour(near_a);
-    b = mean_colour(near_b);
+    split.a = mean_colour(near_a);
+    split.b = mean_colour(near_b);
   }
-  float scatter = 0;
-  for (const Colour& p : near_a) scatter += length(p - a);
-  for (const Colour& p : near_b) scatter += length(p - b);
-  scatter /= static_cast<float>(pieces.size());
-  look.two_colours = !near_a.empty() && !near_b.empty() && length(a - b) > std::max(one_colour, 2.2F * scatter);
+  split.two = !near_a.empty() && !near_b.empty();
+  for (const Colour& p : near_a) split.scatter += unlike(p, split.a);
+  for (const Colour& p : near_b) split.scatter += unlike(p, split.b);
+  split.scatter /= static_cast<float>(pieces.size());
+  return split;
+}
+
+void learn_piece_colours(const std::vector<Colour>& pieces, double board_middle, bool one_side, BoardLook& look) {
+  if (pieces.empty()) return;
+  // From one seed the groups may end up as "the two in the light" and "all others": the tightest of many is taken.
+  ColourSplit best = split_from(pieces, pieces.front());
+  for (std::size_t i = 1; i < pieces.size(); ++i) {
+    const ColourSplit split = split_from(pieces, pieces[i]);
+    if (split.two && (!best.two || split.scatter < best.scatter)) best = split;
+  }
+  look.two_colours = !one_side && best.two && unlike(best.a, best.b) > std::max(one_colour, 2.2F * best.scatter);
+  const Colour all = mean_colour(pieces);
   if (look.two_colours) {
-    look.dark_piece = a.light <= b.light ? a : b;
-    look.light_piece = a.light <= b.light ? b : a;
+    look.dark_piece = best.a.light <= best.b.light ? best.a : best.b;
+    look.light_piece = best.a.light <= best.b.light ? best.b : best.a;
   } else if (all.light < board_middle) {
     look.dark_piece = all;
   } else {
@@ -197,49 +259,48 @@ void learn_piece_colours(const std::vector<Colour>& pieces, double board_middle,
 
 }  // namespace
 
-std::vector<CellLook> look_at_cells(const BoardView& view) {
+std::vector<CellLook> look_at_cells(const BoardView& view, std::optional<int> played) {
   static const Zones zones;
   std::vector<CellLook> cells;
   cells.reserve(view.cells.size());
-  for (const CellPatch& patch : view.cells) cells.push_back(look_at(patch, zones));
+  for (std::size_t i = 0; i < view.cells.size(); ++i) {
+    const bool ground_only = played && parity_of(i, view.squares) != static_cast<std::size_t>(*played);
+    cells.push_back(look_at(view.cells[i], zones, ground_only));
+  }
   measure_cover(view, cells);
   return cells;
 }
 
-Reading read_appearance(const std::vector<CellLook>& cells, int squares, std::optional<int> playable_parity) {
+Reading read_appearance(const std::vector<CellLook>& cells, int squares, const Foreknowledge& known) {
   Reading reading;
   reading.cells.resize(cells.size());
-  reading.evidence = evidence_of(cells, squares);
-  const auto parity_of = [&](std::size_t i) {
-    return (static_cast<int>(i) / squares + static_cast<int>(i) % squares) % 2;
-  };
+  const std::array<Colour, 2> usual = usual_grounds(cells, squares);
+  reading.evidence = evidence_of(cells, squares, usual);
 
   std::array<std::vector<float>, 2> by_parity;
   std::array<double, 2> busy{};
-  std::array<std::vector<float>, 2> ground;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (!cells[i].seen) continue;
-    const auto parity = static_cast<std::size_t>(parity_of(i));
+    const std::size_t parity = parity_of(i, squares);
     by_parity[parity].push_back(reading.evidence[i]);
     busy[parity] += std::clamp<double>(reading.evidence[i] - usual_evidence, 0, 1);
-    ground[parity].push_back(cells[i].ground.light);
   }
   BoardLook& look = reading.look;
-  look.playable_parity = playable_parity.value_or(busy[0] > busy[1] ? 0 : 1);
-  look.threshold = threshold_of(by_parity[static_cast<std::size_t>(look.playable_parity)]);
-  double board_middle = 128;
-  if (!ground[0].empty() && !ground[1].empty()) board_middle = 0.5 * (median(ground[0]) + median(ground[1]));
+  look.playable_parity = known.playable_parity.value_or(busy[0] > busy[1] ? 0 : 1);
+  const auto played = static_cast<std::size_t>(look.playable_parity);
+  look.threshold = known.threshold ? *known.threshold : threshold_of(by_parity[played]);
+  const double board_middle = 0.5 * (usual[0].light + usual[1].light);
 
   std::vector<Colour> pieces;
   for (std::size_t i = 0; i < cells.size(); ++i)
-    if (cells[i].seen && parity_of(i) == look.playable_parity && reading.evidence[i] > look.threshold + undecided)
+    if (cells[i].seen && parity_of(i, squares) == played && reading.evidence[i] > look.threshold + undecided)
       pieces.push_back(cells[i].middle);
-  learn_piece_colours(pieces, board_middle, look);
+  learn_piece_colours(pieces, board_middle, known.one_colour, look);
 
   for (std::size_t i = 0; i < cells.size(); ++i) {
     CellSight& sight = reading.cells[i];
     if (!cells[i].seen) continue;
-    if (parity_of(i) != look.playable_parity) {
+    if (parity_of(i, squares) != played) {
       sight = {CellReading::empty, 1};
       continue;
     }
@@ -250,7 +311,7 @@ Reading read_appearance(const std::vector<CellLook>& cells, int squares, std::op
     } else if (above < 0) {
       sight.reading = CellReading::empty;
     } else if (look.two_colours) {
-      const bool dark = length(cells[i].middle - look.dark_piece) <= length(cells[i].middle - look.light_piece);
+      const bool dark = unlike(cells[i].middle, look.dark_piece) <= unlike(cells[i].middle, look.light_piece);
       sight.reading = dark ? CellReading::dark : CellReading::light;
     } else {
       sight.reading = cells[i].middle.light < board_middle ? CellReading::dark : CellReading::light;

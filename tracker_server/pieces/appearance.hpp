@@ -20,12 +20,13 @@ struct CellLook {
   Colour ground;         // of its corners: the empty square
 };
 
-std::vector<CellLook> look_at_cells(const BoardView& view);
+// played: (row + col) % 2 of the squares that carry pieces, where known: of the others only the ground is looked at.
+std::vector<CellLook> look_at_cells(const BoardView& view, std::optional<int> played = std::nullopt);
 
 // What was learned from a picture; kept, it steadies the next one.
 struct BoardLook {
-  int playable_parity = 1;     // (row + col) % 2 of the squares that carry pieces
-  double threshold = 1;        // of the evidence for a piece
+  int playable_parity = 1;  // (row + col) % 2 of the squares that carry pieces
+  double threshold = 1;     // of the evidence for a piece
   bool two_colours = false;
   Colour dark_piece, light_piece;
 };
@@ -36,7 +37,13 @@ struct Reading {
   BoardLook look;
 };
 
-// playable_parity: where known; otherwise the one that shows more pieces.
-Reading read_appearance(const std::vector<CellLook>& cells, int squares, std::optional<int> playable_parity);
+// What is known of the pieces before looking.
+struct Foreknowledge {
+  std::optional<int> playable_parity;  // otherwise the one that shows more pieces
+  bool one_colour = false;             // only one side's pieces are real: shades among them are shadows
+  std::optional<double> threshold;     // as learned from squares whose contents were known
+};
+
+Reading read_appearance(const std::vector<CellLook>& cells, int squares, const Foreknowledge& known);
 
 }  // namespace counterpart

@@ -13,7 +13,7 @@ namespace counterpart {
 
 // Brightness and two colour differences, grey levels. Distances in it follow what the eye takes for different.
 struct Colour {
-  float light = 0;     // (R + G + B) / 3
+  float light = 0;      // (R + G + B) / 3
   float red_green = 0;  // R - G
   float warm_cold = 0;  // (R + G) / 2 - B
 };
@@ -26,7 +26,7 @@ float length(const Colour& colour);
 constexpr int patch_side = 14;  // samples a side of a square
 
 struct CellPatch {
-  bool seen = false;  // all of it lies in the picture
+  bool seen = false;            // all of it lies in the picture
   std::vector<Colour> samples;  // patch_side * patch_side, by rows, row 0 on the square's side towards row 0
 };
 

@@ -34,6 +34,13 @@ std::vector<bool> covered_squares(const std::vector<CellLook>& looks, int square
   return covered;
 }
 
+// Whether all the real pieces that are expected belong to one side.
+bool one_side(const std::string& expected) {
+  const bool dark = expected.find_first_of("bB") != std::string::npos;
+  const bool light = expected.find_first_of("wW") != std::string::npos;
+  return dark != light;
+}
+
 }  // namespace
 
 PieceReader::PieceReader(int squares) : squares_(squares) {
@@ -41,13 +48,14 @@ PieceReader::PieceReader(int squares) : squares_(squares) {
 }
 
 void PieceReader::forget() {
+  threshold_.reset();
   memory_.assign(static_cast<std::size_t>(squares_ * squares_), {});
   started_ = false;
 }
 
 PieceReading PieceReader::read(const BoardView& view, const FrameStamp& stamp) {
-  const std::vector<CellLook> looks = look_at_cells(view);
-  const Reading now = read_appearance(looks, squares_, 1);
+  const std::vector<CellLook> looks = look_at_cells(view, 1);
+  const Reading now = read_appearance(looks, squares_, {1, one_side(expected_), threshold_});
   PieceReading result;
   result.covered_cells = covered_squares(looks, squares_);
   Occupancy& occupancy = result.occupancy;
@@ -59,8 +67,10 @@ PieceReading PieceReader::read(const BoardView& view, const FrameStamp& stamp) {
   int covered = 0;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     CellMemory& memory = memory_[i];
-    if (result.covered_cells[i]) {
-      ++covered;
+    covered += result.covered_cells[i];
+    // A reflection, or a hand that hides nothing but this square: what looks empty need not be.
+    const bool veiled = now.cells[i].reading == CellReading::empty && looks[i].full > covered_share;
+    if (result.covered_cells[i] || veiled) {
       memory.times = 0;
       occupancy.cells[i] = {CellReading::unknown, 0};
       continue;
@@ -76,10 +86,38 @@ PieceReading PieceReader::read(const BoardView& view, const FrameStamp& stamp) {
     occupancy.cells[i] = {memory.steady, memory.confidence};
   }
   occupancy.covered = covered > 0;
+  if (!occupancy.covered) learn(now);
   if (changed || occupancy.covered || stamp.capture_ns < changed_ns_) changed_ns_ = stamp.capture_ns;
   started_ = true;
   occupancy.stable_ns = stamp.capture_ns - changed_ns_;
   return result;
+}
+
+void PieceReader::learn(const Reading& now) {
+  const int last = playable_squares(squares_);
+  if (static_cast<int>(expected_.size()) != last) return;
+  int as_expected = 0;
+  double weakest_piece = 1e9, busiest_empty = -1e9;
+  for (int square = 1; square <= last; ++square) {
+    const Cell cell = cell_of_square(square, squares_);
+    const auto i = static_cast<std::size_t>(cell.row * squares_ + cell.col);
+    const bool empty = expected_[static_cast<std::size_t>(square - 1)] == 'e';
+    const CellReading seen = now.cells[i].reading;
+    if (seen == CellReading::unknown || empty != (seen == CellReading::empty)) continue;
+    ++as_expected;
+    const double evidence = now.evidence[i];
+    if (empty)
+      busiest_empty = std::max(busiest_empty, evidence);
+    else
+      weakest_piece = std::min(weakest_piece, evidence);
+  }
+  constexpr double rate = 0.05;      // light changes over seconds
+  constexpr double clear_gap = 0.4;  // octaves
+  constexpr double mostly_right = 0.85;
+  const bool both = weakest_piece < 1e9 && busiest_empty > -1e9;
+  if (!both || as_expected < mostly_right * last || weakest_piece - busiest_empty < clear_gap) return;
+  const double middle = 0.5 * (weakest_piece + busiest_empty);
+  threshold_ = threshold_ ? *threshold_ + rate * (middle - *threshold_) : middle;
 }
 
 bool PieceReader::looks_turned_round() const {

@@ -1,6 +1,7 @@
 // The squares read again and again: steadied over time, silent about what is covered.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,11 @@ class PieceReader {
     int times = 0;  // that `last` was seen without a break
     float confidence = 0;
   };
+  // From squares that look as expected: how much a piece stands out here, under this light.
+  void learn(const Reading& now);
+
   int squares_;
+  std::optional<double> threshold_;
   std::string expected_;
   std::vector<CellMemory> memory_;
   std::int64_t changed_ns_ = 0;

@@ -16,8 +16,8 @@ namespace counterpart {
 // through the middle of the square's row; -1 for squares outside the picture.
 std::vector<double> scan_values(const cv::Mat1b& grey, int squares, const BoardToPixel& to_pixel);
 
-// The paper's threshold, learned: the value between the two groups that squares of one colour fall into. `expected` (one
-// of "wbWBe" a playable square, or empty) names squares known to be empty or not, whose values then decide.
+// The paper's threshold, learned: the value between the two groups that squares of one colour fall into. `expected`
+// (one of "wbWBe" a playable square, or empty) names squares known to be empty or not, whose values then decide.
 std::optional<double> scan_threshold(const std::vector<double>& values, int squares, const std::string& expected);
 
 // Paper: a piece is where V <= threshold. Where empty squares are the darker ones it is the other way round.

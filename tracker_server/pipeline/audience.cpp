@@ -118,8 +118,12 @@ void Audience::show(const Frame& frame) {
   link_->broadcast(video);
 }
 
+// A socket that is closed while the peer still talks loses the last words; so listen until they have hung up.
 void Audience::say_goodbye(const std::string& reason) {
+  constexpr std::int64_t kStepNs = 20'000'000;
+  constexpr int kSteps = 50;
   link_->broadcast(Bye{reason});
+  for (int i = 0; i < kSteps && !peers_.empty(); ++i) hear(kStepNs);
 }
 
 std::string Audience::address() const {

@@ -40,6 +40,7 @@ class Audience {
   void show_snapshot(const Message& message);
   void order(const Command& command);
   void show(const Frame& frame);
+  // Waits up to a second for the peers to have heard it.
   void say_goodbye(const std::string& reason);
 
   std::string address() const;

@@ -11,6 +11,7 @@
 #include "tracker_server/edges/pyramid.hpp"
 #include "tracker_server/pieces/piece_reader.hpp"
 #include "tracker_server/pose/board_tracker.hpp"
+#include "tracker_server/pose/plane_pose.hpp"
 #include "tracker_server/pose/projection.hpp"
 
 namespace counterpart {
@@ -41,6 +42,31 @@ auto timed(std::map<std::string, double>& step_ms, const char* name, const Step&
   return result;
 }
 
+// A focal length that is being estimated moves a little with every frame. Those who draw with it are told of a new one
+// only when that shows: until then the pose is put in terms of the old.
+bool worth_telling(const Intrinsics& told, const Intrinsics& camera) {
+  constexpr double shows = 0.003;
+  Intrinsics scaled = told;
+  scaled.fx = camera.fx;
+  scaled.fy = camera.fy;
+  scaled.id = camera.id;
+  return scaled != camera || !(std::abs(camera.fx / told.fx - 1) <= shows) ||
+         !(std::abs(camera.fy / told.fy - 1) <= shows);
+}
+
+void settle_intrinsics(const BoardGeometry& board, TrackedBoard& seen, Intrinsics& told) {
+  seen.camera.id = told.id;
+  if (seen.camera == told) return;
+  if (worth_telling(told, seen.camera)) {
+    const std::uint32_t id = told.id + 1;
+    told = seen.camera;
+    told.id = id;
+  } else if (seen.status != TrackStatus::lost) {
+    seen.X_CB = pose_through_camera(seen.X_CB, seen.camera, told, board);
+  }
+  seen.camera = told;
+}
+
 PoseEstimate estimate_of(const TrackedBoard& seen, const FrameStamp& stamp, std::uint32_t intrinsics_id) {
   PoseEstimate pose;
   pose.stamp = stamp;
@@ -68,15 +94,15 @@ DebugView debug_of(const TrackedBoard& seen, const Model& model, const FrameStam
     const Vector3d a = seen.X_CB * segment.a_M, b = seen.X_CB * segment.b_M;
     if (!(a.z() > 0 && b.z() > 0)) continue;
     const Vector2d p = project(seen.camera, a), q = project(seen.camera, b);
-    debug.lines.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(q.x()),
-                           static_cast<float>(q.y())});
+    debug.lines.push_back(
+        {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(q.x()), static_cast<float>(q.y())});
   }
   for (std::size_t i = 0; i < seen.fit.probes.size(); ++i) {
     const EdgeProbe& probe = seen.fit.probes[i];
     const EdgeHit& hit = seen.fit.hits[i];
     const float along = hit.verdict == EdgeVerdict::accepted || hit.verdict == EdgeVerdict::outlier ? hit.distance : 0;
-    debug.points.push_back({probe.x + along * probe.nx, probe.y + along * probe.ny,
-                            static_cast<std::uint8_t>(hit.verdict)});
+    debug.points.push_back(
+        {probe.x + along * probe.nx, probe.y + along * probe.ny, static_cast<std::uint8_t>(hit.verdict)});
   }
   return debug;
 }
@@ -85,11 +111,21 @@ std::string letters_of(const Occupancy& occupancy) {
   std::string letters;
   for (const CellSight& cell : occupancy.cells) {
     switch (cell.reading) {
-      case CellReading::empty: letters += 'e'; break;
-      case CellReading::dark: letters += 'd'; break;
-      case CellReading::light: letters += 'l'; break;
-      case CellReading::piece: letters += 'p'; break;
-      case CellReading::unknown: letters += '?'; break;
+      case CellReading::empty:
+        letters += 'e';
+        break;
+      case CellReading::dark:
+        letters += 'd';
+        break;
+      case CellReading::light:
+        letters += 'l';
+        break;
+      case CellReading::piece:
+        letters += 'p';
+        break;
+      case CellReading::unknown:
+        letters += '?';
+        break;
     }
   }
   return letters;
@@ -170,18 +206,11 @@ Observation observe(const Frame& frame, ObserveContext& context) {
   const BoardGeometry& board = state.options.board;
   Observation result;
 
-  const Pyramid pyramid =
-      timed(result.step_ms, "pyramid", [&] { return build_pyramid(frame.image_bgr, 3); });
-  const TrackedBoard seen = timed(result.step_ms, "pose", [&] {
-    return state.tracker.track(frame.image_bgr, pyramid, frame.stamp.capture_ns);
-  });
+  const Pyramid pyramid = timed(result.step_ms, "pyramid", [&] { return build_pyramid(frame.image_bgr, 3); });
+  TrackedBoard seen = timed(result.step_ms, "pose",
+                            [&] { return state.tracker.track(frame.image_bgr, pyramid, frame.stamp.capture_ns); });
 
-  Intrinsics camera = seen.camera;
-  camera.id = state.intrinsics.id;
-  if (camera != state.intrinsics) {
-    ++camera.id;
-    state.intrinsics = camera;
-  }
+  settle_intrinsics(board, seen, state.intrinsics);
   result.intrinsics = state.intrinsics;
   result.pose = estimate_of(seen, frame.stamp, state.intrinsics.id);
   result.debug = debug_of(seen, state.tracker.model(), frame.stamp);
@@ -189,7 +218,8 @@ Observation observe(const Frame& frame, ObserveContext& context) {
   const bool good = seen.status == TrackStatus::ok || seen.status == TrackStatus::relocalised;
   if (!good || !state.options.read_pieces) return result;
   const BoardToPixel to_pixel = board_to_pixel(seen, board);
-  const BoardView view = timed(result.step_ms, "view", [&] { return view_board(frame.image_bgr, board.squares, to_pixel); });
+  const BoardView view =
+      timed(result.step_ms, "view", [&] { return view_board(frame.image_bgr, board.squares, to_pixel); });
   const PieceReading reading = timed(result.step_ms, "pieces", [&] { return state.reader.read(view, frame.stamp); });
   result.debug.readings = letters_of(reading.occupancy);
   if (reading.occupancy.covered) result.mask = mask_of(reading.covered_cells, to_pixel, frame, board.squares);

@@ -9,7 +9,7 @@
 
 namespace counterpart {
 
-const char* name_of(TrackStatus status) {
+const char* csv_word(TrackStatus status) {
   switch (status) {
     case TrackStatus::ok:
     case TrackStatus::relocalised:
@@ -32,7 +32,8 @@ Result<void> PoseLog::open(const std::string& file) {
   return {};
 }
 
-void PoseLog::add(const PoseEstimate& pose, const Intrinsics& camera, const BoardGeometry& board, double ms) {
+void PoseLog::add(const PoseEstimate& pose, const Intrinsics& camera, const std::optional<BoardGeometry>& board,
+                  double ms) {
   if (!out_.is_open()) return;
   out_ << pose.stamp.frame_id;
   if (!usable(pose)) {
@@ -41,9 +42,13 @@ void PoseLog::add(const PoseEstimate& pose, const Intrinsics& camera, const Boar
   }
   for (const double value : pose.X_CB.p) out_ << ',' << value;
   for (const double value : pose.X_CB.q) out_ << ',' << value;
-  out_ << ',' << name_of(pose.status) << ',' << pose.rms_px << ',' << camera.fx << ',' << ms;
+  out_ << ',' << csv_word(pose.status) << ',' << pose.rms_px << ',' << camera.fx << ',' << ms;
+  if (!board) {
+    out_ << ",,,,,,,,\n";
+    return;
+  }
   const Eigen::Isometry3d X_CB = to_eigen(pose.X_CB);
-  const double half = 0.5 * board.squares * board.square_size_m;
+  const double half = 0.5 * board->squares * board->square_size_m;
   for (const auto& [x, y] : {std::pair{-half, half}, {half, half}, {half, -half}, {-half, -half}}) {
     const Eigen::Vector2d p = project(camera, X_CB * Eigen::Vector3d(x, y, 0));
     out_ << ',' << p.x() << ',' << p.y();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fstream>
+#include <optional>
 #include <string>
 
 #include "protocol/vocabulary/board_geometry.hpp"
@@ -16,8 +17,9 @@ class PoseLog {
   // Empty name: nothing is written.
   [[nodiscard]] Result<void> open(const std::string& file);
 
-  // ms: from decoded picture to pose. A lost frame has no numbers but those of the frame and the time.
-  void add(const PoseEstimate& pose, const Intrinsics& camera, const BoardGeometry& board, double ms);
+  // ms: from decoded picture to pose. A lost frame has no numbers but those of the frame and the time; a model that is
+  // no board has no corners.
+  void add(const PoseEstimate& pose, const Intrinsics& camera, const std::optional<BoardGeometry>& board, double ms);
 
   // Fails if not everything could be written.
   [[nodiscard]] Result<void> close();
@@ -27,6 +29,6 @@ class PoseLog {
   std::ofstream out_;
 };
 
-const char* name_of(TrackStatus status);  // "ok" (relocalised too), "coasting", "lost"
+const char* csv_word(TrackStatus status);  // "ok" (relocalised too), "coasting", "lost"
 
 }  // namespace counterpart

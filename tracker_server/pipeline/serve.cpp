@@ -48,6 +48,7 @@ class Server {
   Result<std::optional<Frame>> take_frame();
   Observation look(const Frame& frame);
   GameOutputs play(const Frame& frame, const Observation& observation);
+  void obey(const Control& control);
   void think(const std::string& fen);
   std::optional<std::string> engine_answer();
   void publish(const Frame& frame, const Observation& observation, const GameOutputs& outputs);
@@ -69,16 +70,18 @@ class Server {
   std::uint64_t captures_ = 0;
   nlohmann::json illegal_ = nlohmann::json::array();
   std::optional<std::string> pending_move_;  // the engine's, held until the human has thought long enough
+  std::string thinking_about_;               // the position that the opponent is asked about; empty: none
   std::int64_t thought_since_ns_ = 0;
   std::int64_t act_at_ns_ = 0;
   std::int64_t now_ns_ = 0;
+  bool quit_ = false;
   std::string kept_;  // the game as it was last saved
 };
 
 Result<void> Server::run() {
   if (auto opened = poses_.open(options_.poses_file); !opened) return opened;
   if (options_.lockstep) wait_for_renderer();
-  while (!stop_requested() && (options_.frames == 0 || frames_ < options_.frames)) {
+  while (!stop_requested() && !quit_ && (options_.frames == 0 || frames_ < options_.frames)) {
     auto frame = take_frame();
     if (!frame) {
       static_cast<void>(write_report());
@@ -135,12 +138,7 @@ GameOutputs Server::play(const Frame& frame, const Observation& observation) {
   const StepTimer timer(times_, "game");
   audience_.hear(0);
   Heard heard = audience_.take_heard();
-  for (const Control& control : heard.controls) {
-    if (control.kind != ControlKind::corners || control.corners_px.size() != 8) continue;
-    std::array<double, 8> corners{};
-    std::copy(control.corners_px.begin(), control.corners_px.end(), corners.begin());
-    context_->restart(corners);
-  }
+  for (const Control& control : heard.controls) obey(control);
   if (options_.activity == Activity::show) return show_.step(observation, options_.game, heard.renderer_joined);
 
   GameInputs inputs;
@@ -156,8 +154,31 @@ GameOutputs Server::play(const Frame& frame, const Observation& observation) {
   return outputs;
 }
 
+// What concerns the daemon and not the game.
+void Server::obey(const Control& control) {
+  if (control.kind == ControlKind::corners && control.corners_px.size() == 8) {
+    std::array<double, 8> corners{};
+    std::copy(control.corners_px.begin(), control.corners_px.end(), corners.begin());
+    context_->restart(corners);
+  } else if (control.kind == ControlKind::quit) {
+    spdlog::info("asked to quit");
+    quit_ = true;
+  } else if (control.kind == ControlKind::level) {
+    OpponentOptions wanted = options_.opponent;
+    wanted.level = control.number;
+    auto opponent = make_opponent(wanted);
+    if (!opponent) {
+      spdlog::warn("the level stays as it is: {}", opponent.error().message);
+      return;
+    }
+    opponent_ = std::move(*opponent);
+    if (!thinking_about_.empty()) opponent_->think(thinking_about_);
+  }
+}
+
 void Server::think(const std::string& fen) {
   pending_move_.reset();
+  thinking_about_ = fen;
   thought_since_ns_ = now_ns_;
   opponent_->think(fen);
 }
@@ -172,6 +193,7 @@ std::optional<std::string> Server::engine_answer() {
       return std::nullopt;
     }
     pending_move_ = (**answer).move;
+    thinking_about_.clear();
     act_at_ns_ = thought_since_ns_ + static_cast<std::int64_t>((**answer).acted_thinking_s * 1e9);
   }
   if (now_ns_ < act_at_ns_) return std::nullopt;

@@ -19,7 +19,6 @@ enum class Activity {
 
 struct ServeOptions {
   std::string camera_uri;
-  double camera_fps = 0;  // of a folder of pictures, which has no clock of its own; 0: its default
   std::string listen = "127.0.0.1:7401";
   LinkOptions link;
   ObserveOptions observe;

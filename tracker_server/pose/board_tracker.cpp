@@ -115,7 +115,12 @@ BoardTracker::Attempt BoardTracker::attempt(const Pyramid& pyramid, const Isomet
                                             const std::vector<FitRound>& rounds) const {
   Attempt result;
   const auto visible = visible_samples(model_, samples_, start);
-  result.fit = fit_pose(pyramid, samples_, visible, camera_, start, rounds, focal_);
+  if (options_.optimizer.gradient_image) {
+    const Isometry3d X_CB = fit_to_gradient(pyramid, samples_, visible, camera_, start, options_.optimizer);
+    result.fit = judge_pose(pyramid, samples_, visible, camera_, X_CB);
+  } else {
+    result.fit = fit_pose(pyramid, samples_, visible, camera_, start, rounds, focal_);
+  }
   if (!result.fit.X_CM.matrix().allFinite() || result.fit.X_CM.translation().z() <= 0) return result;
   result.check = check_chequer(pyramid.levels[0], options_.board, result.fit.camera, result.fit.X_CM, contrast_);
   const bool from_above = (result.fit.X_CM.inverse().translation()).z() > 0;
@@ -129,8 +134,8 @@ std::optional<BoardTracker::Attempt> BoardTracker::from_located(const LocatedBoa
   std::optional<PlanePose> chosen;
   for (const Matrix3d& H : ways_round(located, options_.board)) {
     const bool known = options_.camera.has_value() || ever_seen_;
-    const PlanePose pose = known ? pose_of_board(H, options_.board, camera_)
-                                 : pose_and_focal_of_board(H, options_.board, width, height);
+    const PlanePose pose =
+        known ? pose_of_board(H, options_.board, camera_) : pose_and_focal_of_board(H, options_.board, width, height);
     // Once seen, the board is taken to lie as it lay.
     if (chosen && (!last_X_CB_ || angle_between(pose.X_CB, *last_X_CB_) >= angle_between(chosen->X_CB, *last_X_CB_)))
       continue;

@@ -14,6 +14,7 @@
 #include "tracker_server/locate/locate.hpp"
 #include "tracker_server/pose/chequer_check.hpp"
 #include "tracker_server/pose/fit.hpp"
+#include "tracker_server/pose/gradient_fit.hpp"
 #include "tracker_server/pose/motion.hpp"
 
 namespace counterpart {
@@ -25,6 +26,7 @@ struct BoardTrackerOptions {
   std::optional<Intrinsics> camera;  // empty: of unknown focal length, which is estimated
   FocalMode focal = FocalMode::fixed;
   Predictor predictor = Predictor::first;
+  Optimizer optimizer;
 };
 
 struct TrackedBoard {

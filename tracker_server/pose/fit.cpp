@@ -17,9 +17,9 @@ using Eigen::Vector3d;
 using Matrix7 = Eigen::Matrix<double, 7, 7>;
 using Vector7 = Eigen::Matrix<double, 7, 1>;
 
-constexpr float least_contrast = 8;          // grey levels, of a step that counts as an edge
-constexpr float weakest_share = 0.35F;       // of the contrast an edge showed before; less is something else
-constexpr double nearest_m = 1e-3;           // in front of the camera
+constexpr float least_contrast = 8;     // grey levels, of a step that counts as an edge
+constexpr float weakest_share = 0.35F;  // of the contrast an edge showed before; less is something else
+constexpr double nearest_m = 1e-3;      // in front of the camera
 
 // Standard deviation of one edge point, pixels: noise, paper that is not flat, a lens that is not ideal.
 constexpr double edge_sigma_px = 0.35;
@@ -56,7 +56,8 @@ void aim(const std::vector<EdgeSample>& samples, const std::vector<std::size_t>&
   fit.hits.assign(fit.probes.size(), {});
 }
 
-// One Gauss-Newton step on the edges found; residuals in pixels of the full picture. Returns false if it cannot be made.
+// One Gauss-Newton step on the edges found; residuals in pixels of the full picture. Returns false if it cannot be
+// made.
 bool improve(const std::vector<EdgeSample>& samples, const FitRound& round, double tukey_px, const FocalPrior& focal,
              PoseFit& fit) {
   const double scale = 1 << round.level;

@@ -18,8 +18,8 @@ struct EdgeSample {
   Eigen::Vector3d p_M;
   Eigen::Vector3d along_M;  // unit
   int segment = 0;
-  int polarity = 0;         // as ModelSegment's, or what was learned
-  float contrast = 0;       // grey levels it showed so far; 0: not known
+  int polarity = 0;    // as ModelSegment's, or what was learned
+  float contrast = 0;  // grey levels it showed so far; 0: not known
 };
 
 // Evenly along each segment, fewer on a model with many.
@@ -31,9 +31,9 @@ std::vector<std::size_t> visible_samples(const Model& model, const std::vector<E
 
 // One pass over the samples.
 struct FitRound {
-  int level = 0;        // of the pyramid
-  float reach_px = 4;   // on that level
-  int stride = 1;       // every so many-th sample
+  int level = 0;       // of the pyramid
+  float reach_px = 4;  // on that level
+  int stride = 1;      // every so many-th sample
   int iterations = 2;
 };
 

@@ -140,4 +140,19 @@ PlanePose pose_and_focal_of_board(const Matrix3d& H, const BoardGeometry& board,
   return best;
 }
 
+Isometry3d pose_through_camera(const Isometry3d& X_CB, const Intrinsics& camera, const Intrinsics& other,
+                               const BoardGeometry& board) {
+  const double half = 0.5 * board.squares * board.square_size_m;
+  std::vector<Crossing> points;
+  for (double y : {-half, 0.0, half})
+    for (double x : {-half, 0.0, half}) {
+      const Vector3d p_B(x, y, 0);
+      points.push_back({p_B, project(camera, X_CB * p_B)});
+    }
+  Isometry3d result = X_CB;
+  result.translation().z() *= other.fx / camera.fx;
+  refine(points, other, result);
+  return result;
+}
+
 }  // namespace counterpart

@@ -25,4 +25,8 @@ PlanePose pose_of_board(const Eigen::Matrix3d& H, const BoardGeometry& board, co
 // cameras usually have where the view says little about it (a board seen squarely from above).
 PlanePose pose_and_focal_of_board(const Eigen::Matrix3d& H, const BoardGeometry& board, int width, int height);
 
+// The pose under which another camera, of nearly the same focal length, shows the board where this one does.
+Eigen::Isometry3d pose_through_camera(const Eigen::Isometry3d& X_CB, const Intrinsics& camera, const Intrinsics& other,
+                                      const BoardGeometry& board);
+
 }  // namespace counterpart

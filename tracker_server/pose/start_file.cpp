@@ -17,9 +17,9 @@ Result<Eigen::Isometry3d> read_start_file(const std::filesystem::path& path) {
     const bool there = json.is_object() && json.contains(names[i]) && json[names[i]].is_number();
     value[i] = there ? json[names[i]].get<double>() : std::nan("");
     if (!std::isfinite(value[i]))
-      return failure(ErrorCode::bad_format,
-                     path.string() + ": \"" + names[i] + "\" must be a finite number; expected {frame, tx, ty, tz, qw, "
-                                                         "qx, qy, qz}.");
+      return failure(ErrorCode::bad_format, path.string() + ": \"" + names[i] +
+                                                "\" must be a finite number; expected {frame, tx, ty, tz, qw, "
+                                                "qx, qy, qz}.");
   }
   const Eigen::Quaterniond q(value[3], value[4], value[5], value[6]);
   if (!(q.norm() > 0.5 && q.norm() < 2))

@@ -1,4 +1,6 @@
 // tracker_server locate: one picture, one JSON object.
+#include "tracker_server/locate/locate.hpp"
+
 #include <chrono>
 #include <filesystem>
 #include <iostream>
@@ -10,7 +12,6 @@
 #include <spdlog/spdlog.h>
 
 #include "tracker_server/camera/camera_json.hpp"
-#include "tracker_server/locate/locate.hpp"
 #include "tracker_server/pieces/appearance.hpp"
 #include "tracker_server/pieces/board_view.hpp"
 #include "tracker_server/programs/programs.hpp"
@@ -26,11 +27,16 @@ struct LocateArguments {
 
 const char* name_of(CellReading reading) {
   switch (reading) {
-    case CellReading::empty: return "empty";
-    case CellReading::dark: return "dark";
-    case CellReading::light: return "light";
-    case CellReading::piece: return "piece";
-    case CellReading::unknown: break;
+    case CellReading::empty:
+      return "empty";
+    case CellReading::dark:
+      return "dark";
+    case CellReading::light:
+      return "light";
+    case CellReading::piece:
+      return "piece";
+    case CellReading::unknown:
+      break;
   }
   return "unknown";
 }
@@ -51,7 +57,7 @@ Result<void> locate(const LocateArguments& arguments) {
   if (board) {
     const auto to_pixel = [&](double column, double row) { return board->to_pixel(column, row); };
     const BoardView view = view_board(picture, arguments.squares, to_pixel);
-    cells = read_appearance(look_at_cells(view), arguments.squares, std::nullopt).cells;
+    cells = read_appearance(look_at_cells(view), arguments.squares, {}).cells;
   }
   nlohmann::ordered_json json;
   json["found"] = board.has_value();

@@ -41,6 +41,8 @@ struct Performance {
 
 class Director {
  public:
+  // The figure has to outlive the director. A figure without the joints that motion needs stands still, and every
+  // command fails with "no_skeleton".
   explicit Director(const Figure& figure);
   Director(Director&&) noexcept;
   ~Director();

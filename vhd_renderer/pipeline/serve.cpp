@@ -1,5 +1,6 @@
 #include "vhd_renderer/pipeline/serve.hpp"
 
+#include <chrono>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -10,6 +11,7 @@
 #include <opencv2/imgproc.hpp>
 #include <spdlog/spdlog.h>
 
+#include "protocol/codec/names.hpp"
 #include "protocol/daemon/step_times.hpp"
 #include "protocol/daemon/stop_signal.hpp"
 #include "protocol/transport/jpeg.hpp"
@@ -17,12 +19,15 @@
 #include "vhd_renderer/body/build_character.hpp"
 #include "vhd_renderer/motion/director.hpp"
 #include "vhd_renderer/output/output.hpp"
+#include "vhd_renderer/output/web_mirror.hpp"
 #include "vhd_renderer/pipeline/director_port.hpp"
 #include "vhd_renderer/pipeline/pairing.hpp"
 #include "vhd_renderer/scene/virtual_scene.hpp"
 
 namespace counterpart {
 namespace {
+
+constexpr std::uint64_t kStatusFrames = 25;  // the page hears of rates so often
 
 constexpr std::int64_t kWaitNs = 100'000'000;  // how often a waiting daemon looks for Ctrl-C
 
@@ -47,6 +52,8 @@ class RendererDaemon {
   [[nodiscard]] Result<RenderedFrame> draw(const PairedFrame& pair, const Performance& performance);
   [[nodiscard]] Result<void> put_out(const cv::Mat& mirror, std::int64_t stamp_ns);
   void answer(const Performance& performance);
+  void mirror_on_web(const cv::Mat& mirror, const PoseEstimate& pose, const Performance& performance);
+  MirrorStatus status_of(const PoseEstimate& pose);
   std::int64_t own_time(std::int64_t capture_ns);
   [[nodiscard]] Result<void> write_report() const;
 
@@ -58,6 +65,7 @@ class RendererDaemon {
   Director director_;
   std::unique_ptr<VirtualScene> virtual_scene_;  // made when the picture's size is known
   std::vector<std::unique_ptr<Output>> outputs_;
+  std::unique_ptr<WebMirror> web_;  // null: no page
   StepTimes times_;
 
   std::optional<Scene> scene_;
@@ -65,6 +73,8 @@ class RendererDaemon {
   std::optional<Intrinsics> intrinsics_;
   std::vector<Command> commands_;
   bool ended_ = false;
+  bool connected_ = false;
+  std::chrono::steady_clock::time_point status_at_ = std::chrono::steady_clock::now();
   std::uint64_t frames_ = 0;
   std::uint64_t without_pose_ = 0;
   std::int64_t offset_ns_ = 0;  // of our time to the camera's, so that ours never goes back
@@ -78,6 +88,11 @@ Result<void> RendererDaemon::open_outputs() {
     if (!output) return tl::make_unexpected(output.error());
     outputs_.push_back(std::move(*output));
   }
+  if (options_.web.empty()) return {};
+  auto web = WebMirror::listen(options_.web);
+  if (!web) return tl::make_unexpected(web.error());
+  web_ = std::move(*web);
+  spdlog::info("the mirror is at http://{}", web_->address());
   return {};
 }
 
@@ -104,6 +119,7 @@ void RendererDaemon::hear(std::int64_t timeout_ns) {
   for (Inbound& inbound : tracker_->receive(timeout_ns)) {
     if (const auto* joined = std::get_if<PeerJoined>(&inbound)) {
       spdlog::info("joined {}{}", joined->software, joined->resumed ? " again" : "");
+      connected_ = true;
       ended_ = false;
       if (!joined->resumed) {
         pairing_.restart();
@@ -111,6 +127,8 @@ void RendererDaemon::hear(std::int64_t timeout_ns) {
       }
     } else if (const auto* left = std::get_if<PeerLeft>(&inbound)) {
       spdlog::warn("the tracker is gone: {}", left->reason.message);
+      ended_ = ended_ || left->said_goodbye;
+      connected_ = false;
     } else {
       receive(std::move(std::get<Received>(inbound).message));
     }
@@ -131,8 +149,10 @@ void RendererDaemon::receive(Message&& message) {
     scene_is_new_ = true;
   } else if (auto* command = std::get_if<Command>(&message)) {
     commands_.push_back(std::move(*command));
-  } else if (std::holds_alternative<Bye>(message)) {
-    ended_ = true;
+  } else if (const auto* state = std::get_if<BoardState>(&message)) {
+    if (web_) web_->say(*state);
+  } else if (const auto* event = std::get_if<GameEvent>(&message)) {
+    if (web_) web_->event(*event);
   }
 }
 
@@ -160,7 +180,43 @@ Result<void> RendererDaemon::show(PairedFrame pair) {
   }
   answer(performance);
   ++frames_;
+  if (web_) mirror_on_web(mirror, pair.pose, performance);
   return put_out(mirror, now_ns_);
+}
+
+// The page gets the picture and what is said; what people press there goes to the tracker.
+void RendererDaemon::mirror_on_web(const cv::Mat& mirror, const PoseEstimate& pose, const Performance& performance) {
+  const StepTimer timer(times_, "web");
+  if (web_->watched()) {
+    VideoFrame picture;
+    picture.stamp = pose.stamp;
+    picture.width = static_cast<std::uint16_t>(mirror.cols);
+    picture.height = static_cast<std::uint16_t>(mirror.rows);
+    picture.stride = static_cast<std::uint32_t>(mirror.cols) * 3;
+    picture.bytes.resize(std::size_t{picture.stride} * picture.height);
+    mirror.copyTo(cv::Mat(mirror.rows, mirror.cols, CV_8UC3, picture.bytes.data()));
+    web_->show(std::move(picture));
+  }
+  web_->subtitle(performance.subtitle);
+  for (const Feedback& feedback : performance.feedback) web_->feedback(feedback);
+  for (const Control& control : web_->take_controls()) tracker_->broadcast(control);
+  if (frames_ % kStatusFrames == 0) web_->status(status_of(pose));
+}
+
+MirrorStatus RendererDaemon::status_of(const PoseEstimate& pose) {
+  const auto now = std::chrono::steady_clock::now();
+  const double seconds = std::chrono::duration<double>(now - status_at_).count();
+  status_at_ = now;
+  MirrorStatus status;
+  status.fps = seconds > 0 ? static_cast<double>(kStatusFrames) / seconds : 0;
+  status.frames = frames_;
+  status.dropped = pairing_.dropped();
+  status.tracker_connected = connected_;
+  status.tracking = name_of(pose.status);
+  for (const PeerStats& peer : tracker_->stats()) {
+    if (peer.round_trip_ns >= 0) status.round_trip_ms = static_cast<double>(peer.round_trip_ns) * 1e-6;
+  }
+  return status;
 }
 
 // Another tracker, or a film that starts again, brings other stamps; the human's time goes on.

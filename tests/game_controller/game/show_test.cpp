@@ -45,7 +45,8 @@ TEST(Show, SetsTheVirtualPieceDownOnAnEmptySquareAndMovesItToAnother) {
   const Occupancy sight = board_with({{0, 1}, {5, 2}, {6, 5}});
   const auto show = plan_show(sight, eight(), Side::light, 0.74);
   ASSERT_TRUE(show);
-  ASSERT_EQ(show->scene.pieces.size(), 1u);
+  ASSERT_EQ(show->scene.pieces.size(), 4u);  // his own and the three real ones, which hide what is behind them
+  EXPECT_TRUE(show->scene.pieces[1].real);
   std::set<std::pair<int, int>> places;
   for (const Grasp& grasp : grasps_of(*show)) {
     if (grasp.piece.empty()) continue;

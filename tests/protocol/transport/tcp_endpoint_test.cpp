@@ -154,11 +154,12 @@ TEST(TcpEndpoint, AFreshServerIsFoundAgainAndIsNotTakenForTheOldOne) {
 
 TEST(TcpEndpoint, AHalfOpenLinkIsNoticedAndComesBack) {
   LinkOptions quick = options_of(Role::tracker);
-  quick.heartbeat_ns = kSecond / 50;
-  quick.dead_after_ns = kSecond / 10;
+  quick.heartbeat_ns = kSecond / 10;
+  quick.dead_after_ns = 20 * kSecond;  // the tracker is patient, so that it is the renderer who notices
   auto tracker = listen_tcp("127.0.0.1:0", quick);
   Relay relay(port_of(**tracker));
   quick.role = Role::renderer;
+  quick.dead_after_ns = kSecond;  // long enough for a machine that is busy with other things
   auto renderer = connect_tcp(relay.address(), quick, 2 * kSecond);
   ASSERT_TRUE(renderer);
   joined(**renderer);
@@ -170,6 +171,26 @@ TEST(TcpEndpoint, AHalfOpenLinkIsNoticedAndComesBack) {
   const auto back = collect(**renderer, [](const auto& a) { return first<PeerJoined>(a) != nullptr; });
   ASSERT_NE(first<PeerJoined>(back), nullptr);
   EXPECT_TRUE(first<PeerJoined>(back)->resumed);
+}
+
+// BYE goes out on both lanes, and either may arrive first.
+TEST(TcpEndpoint, AGoodbyeIsToldApartFromALostLink) {
+  for (int round = 0; round < 20; ++round) {
+    auto tracker = listen_tcp("127.0.0.1:0", options_of(Role::tracker));
+    auto renderer = connect_tcp((*tracker)->address(), options_of(Role::renderer), 2 * kSecond);
+    ASSERT_TRUE(renderer);
+    const PeerId peer = joined(**tracker);
+    VideoFrame picture;
+    picture.width = picture.height = 8;
+    picture.stride = 24;
+    picture.bytes.resize(192);
+    (*tracker)->send(peer, picture);
+    collect(**renderer, [](const auto& a) { return !messages<VideoFrame>(a).empty(); });  // both lanes are open
+    tracker->reset();
+    const auto all = collect(**renderer, [](const auto& a) { return first<PeerLeft>(a) != nullptr; });
+    ASSERT_NE(first<PeerLeft>(all), nullptr);
+    EXPECT_TRUE(first<PeerLeft>(all)->said_goodbye) << first<PeerLeft>(all)->reason.message;
+  }
 }
 
 TEST(TcpEndpoint, SaysThatNobodyListens) {

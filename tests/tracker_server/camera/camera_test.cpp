@@ -42,7 +42,7 @@ TEST_F(CameraTest, AFolderGivesItsPicturesInNameOrder) {
     auto frame = (*camera)->next();
     ASSERT_TRUE(frame && *frame);
     EXPECT_EQ((*frame)->stamp.frame_id, static_cast<FrameId>(i));
-    EXPECT_EQ((*frame)->stamp.capture_ns, i * 40'000'000);
+    EXPECT_EQ((*frame)->stamp.capture_ns, i * 1'000'000'000LL / 15);  // a folder passes for 15 pictures a second
     EXPECT_NEAR((*frame)->image_bgr.at<cv::Vec3b>(5, 5)[0], 10 * (i + 1), 2);
   }
   auto end = (*camera)->next();

@@ -54,21 +54,39 @@ TEST(Appearance, ReadsTheStartPosition) {
   BoardScene scene = game_scene();
   scene.pieces = test::start_position(scene.board);
   const BoardView view = view_board(test::paint(scene, 2), 10, to_pixel(scene));
-  EXPECT_EQ(wrong_cells(scene, read_appearance(look_at_cells(view), 10, 1).cells), 0);
-  EXPECT_EQ(read_appearance(look_at_cells(view), 10, std::nullopt).look.playable_parity, 1);
+  EXPECT_EQ(wrong_cells(scene, read_appearance(look_at_cells(view), 10, {1}).cells), 0);
+  EXPECT_EQ(read_appearance(look_at_cells(view), 10, {}).look.playable_parity, 1);
 }
 
 TEST(Appearance, ReadsDarkPiecesOnDarkSquares) {
   BoardScene scene = game_scene();
   for (int square : {3, 7, 18, 22, 31, 44}) scene.pieces.push_back({cell_of_square(square, 10), {38, 55, 80}});
   const BoardView view = view_board(test::paint(scene, 2), 10, to_pixel(scene));
-  EXPECT_EQ(wrong_cells(scene, read_appearance(look_at_cells(view), 10, 1).cells), 0);
+  EXPECT_EQ(wrong_cells(scene, read_appearance(look_at_cells(view), 10, {1}).cells), 0);
 }
 
 TEST(Appearance, AnEmptyBoardIsEmpty) {
   const BoardScene scene = game_scene();
   const BoardView view = view_board(test::paint(scene, 2), 10, to_pixel(scene));
-  EXPECT_EQ(wrong_cells(scene, read_appearance(look_at_cells(view), 10, 1).cells), 0);
+  EXPECT_EQ(wrong_cells(scene, read_appearance(look_at_cells(view), 10, {1}).cells), 0);
+}
+
+// Hue tells two colours of equal brightness apart, whatever the light does to single pieces.
+TEST(Appearance, TellsTealFromPurpleWhenTwoStandInTheLight) {
+  BoardScene scene = game_scene();
+  scene.board.played_on = SquareColour::light;
+  for (int square = 1; square <= 12; ++square) scene.pieces.push_back({cell_of_square(square, 10), {60, 66, 30}});
+  for (int square = 39; square <= 50; ++square)
+    scene.pieces.push_back({cell_of_square(square, 10), square < 41 ? cv::Vec3b(150, 70, 130) : cv::Vec3b(75, 28, 55)});
+  const BoardView view = view_board(test::paint(scene, 2), 10, to_pixel(scene));
+  const auto cells = read_appearance(look_at_cells(view), 10, {1}).cells;
+  const auto at = [&](int square) {
+    const Cell cell = cell_of_square(square, 10);
+    return cells[static_cast<std::size_t>(cell.row * 10 + cell.col)].reading;
+  };
+  for (int square = 1; square <= 12; ++square) EXPECT_EQ(at(square), at(1)) << square;
+  for (int square = 39; square <= 50; ++square) EXPECT_EQ(at(square), at(50)) << square;
+  EXPECT_NE(at(1), at(50));
 }
 
 TEST(ScanSegments, ReadsDarkPiecesOnLightSquares) {

@@ -1,12 +1,14 @@
 #include "tracker_server/pipeline/observe.hpp"
 
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <map>
 #include <numbers>
-#include <numeric>
 
 #include <gtest/gtest.h>
 
+#include "protocol/vocabulary/pose_eigen.hpp"
 #include "tests/tracker_server/support/board_picture.hpp"
 
 namespace counterpart {
@@ -79,6 +81,34 @@ TEST(Observe, TheExpectedPiecesTellWhichWayRoundTheBoardLies) {
   EXPECT_EQ(seen.occupancy->cells[90].reading, CellReading::empty) << "square 46";
 }
 
+// Who draws with the intrinsics must be able to keep them: the estimate may wander, what is told stands.
+TEST(Observe, AnEstimatedFocalLengthIsToldOnlyWhenItChangesVisibly) {
+  test::BoardScene scene;
+  scene.camera = test::camera_720x576();
+  ObserveOptions options;
+  options.read_pieces = false;
+  ObserveContext context(options);
+  std::map<std::uint32_t, double> told;
+  for (int i = 0; i < 10; ++i) {
+    scene.X_CB = test::looking_at_board(0.75, (45 + i) * degree, (190 + i) * degree);
+    scene.seed = static_cast<unsigned>(i);
+    Frame frame;
+    frame.image_bgr = test::paint(scene, 1);
+    frame.stamp = {static_cast<FrameId>(i), i * 40'000'000};
+    const Observation seen = observe(frame, context);
+    ASSERT_TRUE(usable(seen.pose));
+    EXPECT_EQ(seen.pose.intrinsics_id, seen.intrinsics.id);
+    const auto [known, fresh] = told.try_emplace(seen.intrinsics.id, seen.intrinsics.fx);
+    EXPECT_EQ(known->second, seen.intrinsics.fx) << "one id, one camera";
+    // Pose and intrinsics that are told together put the board where it is seen; one ray a pixel is worth 0.5 px.
+    EXPECT_LT(
+        test::farthest_crossing_px(scene.board, scene.camera, scene.X_CB, seen.intrinsics, to_eigen(seen.pose.X_CB)),
+        0.5);
+  }
+  for (auto a = told.begin(), b = std::next(told.begin()); b != told.end(); a = b++)
+    EXPECT_GT(std::abs(b->second / a->second - 1), 0.003);
+}
+
 TEST(Observe, NoBoardIsLostAndReadsNothing) {
   ObserveOptions options;
   options.intrinsics = test::camera_720x576();
@@ -89,6 +119,7 @@ TEST(Observe, NoBoardIsLostAndReadsNothing) {
   const Observation seen = observe(frame, context);
   EXPECT_EQ(seen.pose.status, TrackStatus::lost);
   EXPECT_FALSE(seen.occupancy);
+  EXPECT_EQ(observe(frame, context).intrinsics.id, seen.intrinsics.id);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include <gtest/gtest.h>
+#include <opencv2/core.hpp>
 
 #include "tests/tracker_server/support/board_picture.hpp"
 #include "tracker_server/pose/projection.hpp"

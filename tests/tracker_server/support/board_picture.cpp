@@ -69,27 +69,41 @@ cv::Vec3b colour_along(const BoardScene& scene, const Vector3d& eye, const Vecto
 
 cv::Mat paint(const BoardScene& scene, int rays) {
   const Intrinsics& camera = scene.camera;
-  cv::Mat picture(camera.height, camera.width, CV_8UC3);
   const Eigen::Isometry3d X_BC = scene.X_CB.inverse();
   const Vector3d eye = X_BC.translation();
-  cv::RNG random(scene.seed);
+  const auto seen_at = [&](double x, double y) {
+    const Eigen::Vector2d n = normalised_of_pixel(camera, {x, y});
+    return colour_along(scene, eye, X_BC.linear() * Vector3d(n.x(), n.y(), 1));
+  };
+  cv::Mat3b middles(camera.height, camera.width);
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x) {
-      cv::Vec3d sum(0, 0, 0);
       const auto hidden = scene.before ? scene.before(x, y) : std::nullopt;
-      if (hidden) {
-        sum = cv::Vec3d(*hidden);
-      } else {
+      middles(y, x) = hidden ? *hidden : seen_at(x, y);
+    }
+  // Only where an edge passes do the other rays through a pixel show anything else.
+  const auto is_plain = [&](int x, int y) {
+    for (int v = std::max(0, y - 1); v <= std::min(camera.height - 1, y + 1); ++v)
+      for (int u = std::max(0, x - 1); u <= std::min(camera.width - 1, x + 1); ++u)
+        if (middles(v, u) != middles(y, x)) return false;
+    return true;
+  };
+  cv::Mat3b picture(middles.size());
+  cv::Mat noise(middles.size(), CV_32FC3);
+  cv::RNG random(scene.seed);
+  random.fill(noise, cv::RNG::NORMAL, 0, scene.noise);
+  for (int y = 0; y < camera.height; ++y)
+    for (int x = 0; x < camera.width; ++x) {
+      cv::Vec3d sum = middles(y, x);
+      if (!is_plain(x, y) && !(scene.before && scene.before(x, y))) {
+        sum = {0, 0, 0};
         for (int i = 0; i < rays; ++i)
-          for (int j = 0; j < rays; ++j) {
-            const Eigen::Vector2d p(x + (j + 0.5) / rays - 0.5, y + (i + 0.5) / rays - 0.5);
-            const Eigen::Vector2d n = normalised_of_pixel(camera, p);
-            sum += cv::Vec3d(colour_along(scene, eye, X_BC.linear() * Vector3d(n.x(), n.y(), 1)));
-          }
+          for (int j = 0; j < rays; ++j)
+            sum += cv::Vec3d(seen_at(x + (j + 0.5) / rays - 0.5, y + (i + 0.5) / rays - 0.5));
         sum /= rays * rays;
       }
-      cv::Vec3b& pixel = picture.at<cv::Vec3b>(y, x);
-      for (int c = 0; c < 3; ++c) pixel[c] = cv::saturate_cast<std::uint8_t>(sum[c] + random.gaussian(scene.noise));
+      const auto& grain = noise.at<cv::Vec3f>(y, x);
+      for (int c = 0; c < 3; ++c) picture(y, x)[c] = cv::saturate_cast<std::uint8_t>(sum[c] + grain[c]);
     }
   return picture;
 }

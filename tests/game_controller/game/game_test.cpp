@@ -1,0 +1,397 @@
+#include "game_controller/game/game.hpp"
+
+#include <gtest/gtest.h>
+
+#include "game_controller/rules/record.hpp"
+#include "tests/game_controller/game/simulated_game.hpp"
+
+namespace counterpart {
+namespace {
+
+using simulated::frame_ns;
+using simulated::Play;
+
+GameOptions options_from(const std::string& fen = "") {
+  GameOptions options;
+  options.start_fen = fen;
+  return options;
+}
+
+// The judge of a whole game: every move of the record is legal, and the record's end is the position that is shown.
+void expect_sound(const Play& play) {
+  const Rules& rules = play.rules();
+  Record record(rules,
+                play.options.start_fen.empty() ? start_position(rules) : *read_fen(rules, play.options.start_fen));
+  for (const std::string& text : play.game.board_state().moves) {
+    const auto move = read_move(rules, record.position(), text);
+    ASSERT_TRUE(move) << move.error().message;
+    record.play(*move);
+  }
+  EXPECT_EQ(write_squares(rules, record.position()), play.game.board_state().squares);
+}
+
+TEST(Game, a_whole_game_is_played_to_its_end) {
+  for (const char* rules : {"international", "brazilian", "english"}) {
+    GameOptions options;
+    options.rules = rules;
+    options.board.squares = find_rules(rules)->squares;
+    Play play(options, 7);
+    ASSERT_TRUE(play.until(EventKind::game_over, 40'000)) << rules;
+    expect_sound(play);
+    EXPECT_GE(play.game.board_state().moves.size(), 20u) << rules;
+    EXPECT_GE(play.count(EventKind::captured), 4) << rules;
+    EXPECT_EQ(play.count(EventKind::illegal_move), 0) << rules;
+    EXPECT_EQ(play.count(EventKind::waiting_for_removal) - play.count(EventKind::removal_done),
+              play.game.board_state().to_remove.empty() ? 0 : 1);
+    EXPECT_TRUE(play.renderer.ids_grow);
+    // At every change of turn the screen showed the virtual pieces where the position has them.
+    EXPECT_EQ(play.moves_drawn_right, play.count(EventKind::turn)) << rules;
+    EXPECT_NE(play.game.board_state().result, GameResult::open);
+  }
+}
+
+TEST(Game, the_virtual_player_may_have_the_dark_pieces) {
+  GameOptions options;
+  options.virtual_side = Side::dark;
+  Play play(options, 3);
+  ASSERT_TRUE(play.until(EventKind::game_over, 40'000));
+  expect_sound(play);
+  EXPECT_EQ(play.moves_drawn_right, play.count(EventKind::turn));
+}
+
+TEST(Game, two_runs_are_equal) {
+  Play a(options_from(), 11);
+  Play b(options_from(), 11);
+  for (int i = 0; i < 3000; ++i) {
+    a.step();
+    b.step();
+  }
+  EXPECT_EQ(a.log, b.log);
+  EXPECT_EQ(a.game.save(), b.game.save());
+  EXPECT_EQ(a.game.pdn(), b.game.pdn());
+}
+
+TEST(Game, waits_for_the_set_up_and_says_what_is_wrong) {
+  Play play(options_from(), 1);
+  play.player_acts = false;
+  const Bits right = play.table.pieces;
+  play.table.pieces = right & ~square_mask(7, 10);
+  ASSERT_TRUE(play.until(EventKind::set_up_wrong));
+  EXPECT_EQ(play.events.back().squares, std::vector<int>{7});
+  EXPECT_EQ(play.game.board_state().phase, GamePhase::setting_up);
+  play.put(right);
+  ASSERT_TRUE(play.until(EventKind::game_started));
+}
+
+TEST(Game, a_board_turned_round_is_noticed) {
+  Play play(options_from(), 1);
+  play.table.pieces = start_position(play.rules()).light;
+  ASSERT_TRUE(play.until(EventKind::set_up_wrong));
+  EXPECT_EQ(play.events.back().code, "board_turned");
+}
+
+// The real player's pieces after the virtual player's first move.
+void reach_real_turn(Play& play) {
+  play.player_acts = false;
+  while (play.game.board_state().phase != GamePhase::real_to_move) {
+    play.step();
+    ASSERT_LT(play.frame, 2000);
+  }
+}
+
+TEST(Game, an_illegal_move_is_named_and_put_back) {
+  Play play(options_from(), 5);
+  reach_real_turn(play);
+  const Bits right = play.table.pieces;
+  play.put((right & ~square_mask(18, 10)) | square_mask(27, 10));
+  ASSERT_TRUE(play.until(EventKind::illegal_move));
+  const GameEvent wrong = play.events.back();
+  EXPECT_EQ(wrong.code, "moved_too_far");
+  EXPECT_EQ(wrong.squares, (std::vector<int>{18, 27}));
+  ASSERT_FALSE(wrong.legal.empty());
+  EXPECT_TRUE(read_move(play.rules(), play.position(), wrong.legal.front()));
+  EXPECT_EQ(play.game.board_state().phase, GamePhase::illegal);
+  EXPECT_EQ(play.game.board_state().moves.size(), 1u);
+  play.put(right);
+  ASSERT_TRUE(play.until(EventKind::board_restored));
+  EXPECT_EQ(play.game.board_state().phase, GamePhase::real_to_move);
+}
+
+TEST(Game, an_illegal_move_may_be_followed_by_a_legal_one) {
+  Play play(options_from(), 5);
+  reach_real_turn(play);
+  const Bits right = play.table.pieces;
+  play.put((right & ~square_mask(18, 10)) | square_mask(27, 10));
+  ASSERT_TRUE(play.until(EventKind::illegal_move));
+  play.put((right & ~square_mask(16, 10)) | square_mask(21, 10));
+  ASSERT_TRUE(play.until(EventKind::move));
+  EXPECT_EQ(play.events[play.events.size() - 2].move, "16-21");
+  EXPECT_EQ(play.count(EventKind::board_restored), 1);
+}
+
+TEST(Game, a_hand_over_the_board_is_no_move) {
+  Play play(options_from(), 5);
+  reach_real_turn(play);
+  const std::size_t before = play.events.size();
+  play.put(play.table.pieces, 200);
+  for (int i = 0; i < 220; ++i) play.step();
+  EXPECT_EQ(play.events.size(), before);
+}
+
+TEST(Game, a_move_is_recognised_soon_after_the_hand_is_away) {
+  Play play(options_from(), 5);
+  reach_real_turn(play);
+  play.put((play.table.pieces & ~square_mask(16, 10)) | square_mask(21, 10), 10);
+  while (play.hand_is_over) play.step();
+  const std::int64_t away = play.frame;
+  ASSERT_TRUE(play.until(EventKind::move));
+  EXPECT_LE((play.frame - away) * frame_ns, 400'000'000);
+}
+
+TEST(Game, a_piece_on_a_light_square_is_named) {
+  Play play(options_from(), 5);
+  reach_real_turn(play);
+  play.table.pieces &= ~square_mask(20, 10);
+  play.table.strays = {{4, 8}};
+  ASSERT_TRUE(play.until(EventKind::illegal_move));
+  EXPECT_EQ(play.events.back().code, "light_square");
+}
+
+TEST(Game, a_real_piece_cannot_land_on_a_virtual_one) {
+  Play play(options_from("B:W27,45:B22,7"), 5);
+  play.player_acts = false;
+  ASSERT_TRUE(play.until(EventKind::turn));
+  play.put(square_mask(27, 10) | square_mask(7, 10));
+  ASSERT_TRUE(play.until(EventKind::illegal_move));
+  EXPECT_EQ(play.game.board_state().phase, GamePhase::illegal);
+}
+
+TEST(Game, captured_virtual_pieces_leave_the_screen) {
+  Play play(options_from("B:W28,45:B22,7"), 5);
+  play.player_acts = false;
+  ASSERT_TRUE(play.until(EventKind::turn));
+  play.put(square_mask(33, 10) | square_mask(7, 10));
+  ASSERT_TRUE(play.until(EventKind::captured));
+  EXPECT_EQ(play.events[play.events.size() - 2].captured, std::vector<int>{28});
+  EXPECT_EQ(play.renderer.drawn(play.options.board), square_mask(45, 10));
+}
+
+TEST(Game, waits_until_captured_real_pieces_are_off) {
+  Play play(options_from("W:W28,45:B22,7"), 5);
+  play.player_acts = false;
+  play.player_removes = false;
+  ASSERT_TRUE(play.until(EventKind::waiting_for_removal));
+  EXPECT_EQ(play.game.board_state().to_remove, std::vector<int>{22});
+  for (int i = 0; i < 600; ++i) play.step();  // reminded, but nothing else happens
+  EXPECT_EQ(play.game.board_state().phase, GamePhase::waiting_for_removal);
+  play.player_removes = true;
+  ASSERT_TRUE(play.until(EventKind::removal_done));
+  EXPECT_EQ(play.game.board_state().phase, GamePhase::real_to_move);
+}
+
+TEST(Game, removing_and_moving_at_once_is_understood) {
+  Play play(options_from("W:W28,45:B22,7"), 5);
+  play.player_acts = false;
+  play.player_removes = false;
+  ASSERT_TRUE(play.until(EventKind::waiting_for_removal));  // 28x17 or 28x... took 22
+  MoveList legal;
+  generate(play.rules(), play.position(), legal);
+  play.put((play.position().dark & ~one(legal[0].from)) | one(legal[0].to));
+  ASSERT_TRUE(play.until(EventKind::move));
+  EXPECT_EQ(play.count(EventKind::removal_done), 1);
+  EXPECT_EQ(play.count(EventKind::illegal_move), 0);
+}
+
+TEST(Game, the_wrong_piece_taken_off_is_named) {
+  Play play(options_from("W:W28,45:B22,7,8"), 5);
+  play.player_acts = false;
+  play.player_removes = false;
+  ASSERT_TRUE(play.until(EventKind::waiting_for_removal));
+  play.put(square_mask(22, 10) | square_mask(8, 10));
+  ASSERT_TRUE(play.until(EventKind::illegal_move));
+  EXPECT_EQ(play.events.back().code, "extra_piece_removed");
+  EXPECT_EQ(play.events.back().squares, std::vector<int>{7});
+}
+
+TEST(Game, a_failed_grasp_is_tried_again_and_then_the_piece_is_set) {
+  for (const int failures : {1, 2}) {
+    Play play(options_from(), 5);
+    play.renderer.fail_grasps = failures;
+    ASSERT_TRUE(play.until(EventKind::move)) << failures;
+    play.step();
+    EXPECT_EQ(play.renderer.drawn(play.options.board), play.position().light);
+    ASSERT_TRUE(play.until(EventKind::turn));
+    expect_sound(play);
+  }
+}
+
+TEST(Game, a_fresh_renderer_gets_everything_again) {
+  Play play(options_from(), 5);
+  ASSERT_TRUE(play.until(EventKind::turn));
+  while (play.thinking_about || play.renderer.running.empty()) play.step();
+  for (int i = 0; i < 3; ++i) play.step();
+  play.renderer.running.clear();  // killed in the middle of a grasp
+  play.renderer.pieces.clear();
+  play.join = true;
+  ASSERT_TRUE(play.until(EventKind::move));
+  play.step();
+  EXPECT_EQ(play.renderer.drawn(play.options.board), play.position().light);
+  EXPECT_TRUE(play.renderer.ids_grow);
+  ASSERT_TRUE(play.until(EventKind::game_over, 40'000));
+  EXPECT_EQ(play.moves_drawn_right, play.count(EventKind::turn));
+}
+
+TEST(Game, goes_on_after_this_process_was_killed_at_any_time) {
+  for (const int killed_at : {5, 30, 47, 60, 75, 90, 123, 200, 333, 512, 700}) {
+    Play play(options_from(), 5);
+    for (int i = 0; i < killed_at; ++i) play.step();
+    const std::string saved = play.game.save();
+    const std::uint64_t last_id = play.renderer.last_id;
+    auto resumed = Game::resume(play.options, saved);
+    ASSERT_TRUE(resumed) << resumed.error().message;
+    EXPECT_EQ(resumed->board_state().moves, play.game.board_state().moves);
+    play.game = std::move(*resumed);
+    play.thinking_about.reset();
+    play.renderer.running.clear();
+    play.join = true;
+    ASSERT_TRUE(play.until(EventKind::game_over, 40'000)) << killed_at;
+    expect_sound(play);
+    EXPECT_TRUE(play.renderer.ids_grow);
+    EXPECT_GT(play.renderer.last_id, last_id);
+  }
+}
+
+TEST(Game, damaged_saves_are_refused_with_a_sentence) {
+  Play play(options_from(), 5);
+  ASSERT_TRUE(play.until(EventKind::turn));
+  const std::string saved = play.game.save();
+  EXPECT_FALSE(Game::resume(play.options, ""));
+  EXPECT_FALSE(Game::resume(play.options, "{}"));
+  EXPECT_FALSE(Game::resume(play.options, saved.substr(0, saved.size() / 2)));
+  std::string other = saved;
+  other.replace(other.find("\"phase\":"), 9, "\"phase\":9");
+  EXPECT_FALSE(Game::resume(play.options, other));
+}
+
+TEST(Game, undo_waits_for_the_board_and_goes_on) {
+  Play play(options_from(), 5);
+  for (int turns = 0; turns < 5; ++turns) ASSERT_TRUE(play.until(EventKind::turn));
+  const std::size_t moves = play.game.board_state().moves.size();
+  play.player_acts = false;
+  while (play.game.board_state().phase != GamePhase::real_to_move) play.step();
+  Control undo;
+  undo.kind = ControlKind::undo;
+  play.controls = {undo};
+  ASSERT_TRUE(play.until(EventKind::undone));
+  EXPECT_LT(play.game.board_state().moves.size(), moves);
+  EXPECT_EQ(play.position().turn, Side::dark);
+  EXPECT_EQ(play.game.board_state().phase, GamePhase::setting_up);
+  play.put(play.position().dark);
+  ASSERT_TRUE(play.until(EventKind::board_restored));
+  EXPECT_EQ(play.game.board_state().phase, GamePhase::real_to_move);
+  play.player_acts = true;
+  ASSERT_TRUE(play.until(EventKind::game_over, 40'000));
+  expect_sound(play);
+}
+
+TEST(Game, pause_ignores_the_board_and_resume_goes_on) {
+  Play play(options_from(), 5);
+  reach_real_turn(play);
+  Control control;
+  control.kind = ControlKind::pause;
+  play.controls = {control};
+  play.step();
+  EXPECT_EQ(play.game.board_state().phase, GamePhase::paused);
+  play.put(0);
+  for (int i = 0; i < 100; ++i) play.step();
+  EXPECT_EQ(play.count(EventKind::illegal_move), 0);
+  control.kind = ControlKind::resume;
+  play.controls = {control};
+  ASSERT_TRUE(play.until(EventKind::illegal_move));
+}
+
+TEST(Game, resigning_ends_the_game) {
+  Play play(options_from(), 5);
+  reach_real_turn(play);
+  Control control;
+  control.kind = ControlKind::resign;
+  play.controls = {control};
+  ASSERT_TRUE(play.until(EventKind::game_over));
+  EXPECT_EQ(play.game.board_state().result, GameResult::light_wins);
+  EXPECT_EQ(play.events.back().code, "resigned");
+  EXPECT_NE(play.game.pdn().find("[Result \"2-0\"]"), std::string::npos);
+}
+
+TEST(Game, controls_that_cannot_be_obeyed_are_answered) {
+  Play play(options_from(), 5);
+  play.step();
+  Control undo;
+  undo.kind = ControlKind::undo;
+  Control fresh;
+  fresh.kind = ControlKind::new_game;
+  fresh.text = "nonsense";
+  play.controls = {undo, fresh};
+  EXPECT_EQ(play.step().rejected.size(), 2u);
+}
+
+TEST(Game, the_move_may_be_named) {
+  Play play(options_from(), 5);
+  reach_real_turn(play);
+  Control control;
+  control.kind = ControlKind::it_was;
+  control.text = "20-25";
+  play.controls = {control};
+  play.table.pieces = (play.table.pieces & ~square_mask(20, 10)) | square_mask(25, 10);
+  ASSERT_TRUE(play.until(EventKind::move));
+  EXPECT_EQ(play.game.board_state().moves.back(), "20-25");
+}
+
+// The king on 21 can capture by way of 38 and 24 or of 49 and 35; both end on 2, with other pieces taken.
+TEST(Game, an_ambiguous_capture_is_resolved_by_what_was_seen_on_the_way) {
+  const std::string fen = "B:W8,17,29,32,39,40:B4,K21,34";
+  const Position p = *read_fen(international_rules, fen);
+  MoveList legal;
+  generate(international_rules, p, legal);
+  ASSERT_EQ(legal.size(), 2);
+  ASSERT_EQ(legal[0].to, legal[1].to);
+  const Bits others = square_mask(4, 10) | square_mask(34, 10);
+  const Bits end = others | one(legal[0].to);
+  for (const Move& move : {legal[0], legal[1]}) {
+    Play play(options_from(fen), 5);
+    play.player_acts = false;
+    ASSERT_TRUE(play.until(EventKind::turn));
+    const int via = routes(international_rules, p, move).front().squares[1];
+    play.put(square_mask(via, 10) | others);
+    for (int i = 0; i < 12; ++i) play.step();
+    play.put(end);
+    ASSERT_TRUE(play.until(EventKind::move));
+    EXPECT_EQ(play.game.board_state().moves.back(), path_text(international_rules, p, move));
+  }
+  Play play(options_from(fen), 5);
+  play.player_acts = false;
+  ASSERT_TRUE(play.until(EventKind::turn));
+  play.put(end);
+  ASSERT_TRUE(play.until(EventKind::board_unclear));
+  EXPECT_EQ(play.events.back().code, "which_capture");
+  EXPECT_EQ(play.events.back().legal.size(), 2u);
+  // Asked, the player says so.
+  Control control;
+  control.kind = ControlKind::it_was;
+  control.text = play.events.back().legal.back();
+  play.controls = {control};
+  ASSERT_TRUE(play.until(EventKind::move));
+}
+
+TEST(Game, bad_options_are_refused) {
+  GameOptions options;
+  options.rules = "chess";
+  EXPECT_FALSE(Game::start(options));
+  options = options_from("W:W99:B1");
+  EXPECT_FALSE(Game::start(options));
+  options = {};
+  options.board.squares = 8;
+  EXPECT_FALSE(Game::start(options));
+}
+
+}  // namespace
+}  // namespace counterpart

@@ -1,0 +1,71 @@
+// Everything that motion decides about a body at one moment. The solver turns it into a pose; because all of it varies
+// smoothly, so does the pose.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "vhd_renderer/motion/anatomy.hpp"
+#include "vhd_renderer/motion/hand.hpp"
+
+namespace counterpart {
+
+// Turns in radians: pitch bends forward / looks down, roll leans to the right, yaw turns to the left.
+struct Turn {
+  float pitch = 0;
+  float roll = 0;
+  float yaw = 0;
+
+  Turn operator+(const Turn& o) const { return {pitch + o.pitch, roll + o.roll, yaw + o.yaw}; }
+  Turn operator*(float k) const { return {pitch * k, roll * k, yaw * k}; }
+};
+
+struct ArmGoal {
+  Eigen::Vector3f wrist_S{0, 0, 0};
+  Eigen::Quaternionf R_SW = Eigen::Quaternionf::Identity();  // hand frame W
+  float swivel_rad = 0;                                      // lifts the elbow away from its natural place
+  float help = 1;                                            // 0..1: how far the trunk leans to reach it
+  HandShape shape;
+};
+
+struct FootGoal {
+  Eigen::Vector3f ball_S{0, 0, 0};  // point of the sole under the toe joint
+  float heading_rad = 0;            // of the foot, about z from S's y axis
+  float pitch_rad = 0;              // heel up, turning about the ball
+};
+
+struct BodyControls {
+  Eigen::Vector3f pelvis_S{0, 0, 0};     // middle between the hip joints
+  float heading_rad = 0;                 // of the pelvis, about z from S's y axis
+  Turn pelvis;                           // beyond the heading
+  Turn spine;                            // all of it together
+  Turn head;                             // added to where the gaze takes it
+  Eigen::Vector3f gaze_S{0, 1, 0};       // what the eyes are on
+  Eigen::Vector3f head_gaze_S{0, 1, 0};  // what the head turns to; follows more slowly
+  float head_share = 0.7F;               // of the gaze that the head does
+  std::array<float, 2> shrug{0, 0};      // 0..1
+  std::array<ArmGoal, 2> arms;
+  std::array<FootGoal, 2> feet;
+  float table_z_m = -0.015F;      // elbows and forearms stay above it ...
+  float table_edge_y_m = -0.36F;  // ... beyond this line; far away when he does not sit at it
+  std::map<std::string, float> morphs;
+  float jaw_rad = 0;
+};
+
+struct SolvedBody {
+  BodyPose pose;
+  std::array<float, 2> arm_gap_m{0, 0};  // distance of the wrist from its goal
+  std::array<float, 2> foot_gap_m{0, 0};
+};
+
+// The one body solver: pelvis, trunk with the lean that the arms need, legs, head and eyes, arms, fingers.
+void solve_body(const Figure& figure, const Anatomy& anatomy, const BodyControls& controls, SolvedBody& solved);
+
+// Rotation of a body turned by `heading` and then by `turn`.
+Eigen::Quaternionf rotation_of(float heading_rad, const Turn& turn);
+
+}  // namespace counterpart

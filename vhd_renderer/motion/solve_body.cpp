@@ -1,0 +1,196 @@
+#include <cmath>
+
+#include "vhd_renderer/motion/body_controls.hpp"
+#include "vhd_renderer/motion/curves.hpp"
+#include "vhd_renderer/motion/limb.hpp"
+
+namespace counterpart {
+namespace {
+
+using Eigen::AngleAxisf;
+using Eigen::Quaternionf;
+using Eigen::Vector3f;
+
+std::size_t at(int j) {
+  return static_cast<std::size_t>(j);
+}
+
+// The largest lean with which a seated person reaches: a share of each goes with `lean` from 0 to 1.
+constexpr float lean_pelvis = radians(24);
+constexpr float lean_spine = radians(38);
+constexpr float lean_twist = radians(20);
+constexpr float lean_clavicle = radians(16);
+
+struct Lean {
+  float amount = 0;                  // 0..1
+  std::array<float, 2> share{0, 0};  // of each arm in it
+};
+
+// Root, spine and shoulder girdle.
+void set_trunk(const Figure& figure, const Anatomy& a, const BodyControls& c, const Lean& lean, BodyPose& pose) {
+  Turn pelvis = c.pelvis;
+  pelvis.pitch += lean.amount * lean_pelvis;
+  const Quaternionf G = rotation_of(c.heading_rad, pelvis);
+  const Vector3f hips_H = 0.5F * (figure.joints[at(a.legs[0].limb.root)].X_HJ.translation() +
+                                  figure.joints[at(a.legs[1].limb.root)].X_HJ.translation());
+  pose.turn[at(a.root)] = G;
+  pose.root_p_S = c.pelvis_S + G * (figure.joints[at(a.root)].X_HJ.translation() - hips_H);
+  Turn spine = c.spine;
+  spine.pitch += lean.amount * lean_spine;
+  spine.yaw += lean.amount * lean_twist * (lean.share[right_side] - lean.share[left_side]);
+  const Quaternionf each = rotation_of(0, spine * (1.F / static_cast<float>(a.spine.size())));
+  for (const int j : a.spine) pose.turn[at(j)] = each;
+  update_chain(figure, pose, a.trunk);
+  for (const std::size_t s : {left_side, right_side}) {
+    const int clavicle = a.arms[s].clavicle;
+    if (clavicle < 0) continue;
+    const float side = s == right_side ? 1.F : -1.F;
+    const float forward = lean.amount * lean_clavicle * lean.share[s];
+    pose.turn[at(clavicle)] =
+        AngleAxisf(side * forward, Vector3f::UnitZ()) * AngleAxisf(-side * radians(24) * c.shrug[s], Vector3f::UnitY());
+    update_chain(figure, pose, a.arms[s].girdle);
+  }
+}
+
+float reach_of(const Anatomy& a, const BodyControls& c, const BodyPose& pose, std::size_t s) {
+  return (pose.p_S[at(a.arms[s].limb.root)] - c.arms[s].wrist_S).norm();
+}
+
+// How far he has to lean so that no arm is stretched: the arm gives way first, the trunk comes early and softly.
+Lean find_lean(const Figure& figure, const Anatomy& a, const BodyControls& c, BodyPose& pose) {
+  set_trunk(figure, a, c, {}, pose);
+  Lean lean;
+  std::array<float, 2> wanted{};
+  float excess_sum = 0;
+  for (const std::size_t s : {left_side, right_side}) {
+    const float length = a.arms[s].limb.length_m();
+    const float distance = reach_of(a, c, pose, s);
+    const float soft = soft_limit(distance, 0.72F * length, 0.93F * length);
+    wanted[s] = distance - (distance - soft) * c.arms[s].help;
+    lean.share[s] = std::max(0.F, distance - wanted[s]);
+    excess_sum += lean.share[s];
+  }
+  if (excess_sum < 1e-5F) return {};
+  for (float& share : lean.share) share /= excess_sum;
+  float low = 0;
+  float high = 1;
+  for (int round = 0; round < 11; ++round) {
+    lean.amount = 0.5F * (low + high);
+    set_trunk(figure, a, c, lean, pose);
+    float worst = -1;
+    for (const std::size_t s : {left_side, right_side}) worst = std::max(worst, reach_of(a, c, pose, s) - wanted[s]);
+    (worst > 0 ? low : high) = lean.amount;
+  }
+  return lean;
+}
+
+void set_legs(const Figure& figure, const Anatomy& a, const BodyControls& c, SolvedBody& solved) {
+  BodyPose& pose = solved.pose;
+  for (const std::size_t s : {left_side, right_side}) {
+    const LegParts& leg = a.legs[s];
+    const FootGoal& foot = c.feet[s];
+    const Quaternionf G(AngleAxisf(foot.heading_rad, Vector3f::UnitZ()) *
+                        AngleAxisf(-foot.pitch_rad, Vector3f::UnitX()));
+    const Vector3f ankle_H = figure.joints[at(leg.limb.end)].X_HJ.translation();
+    LimbGoal goal;
+    goal.end_S = foot.ball_S + G * (ankle_H - leg.ball_H);
+    goal.end_G = G;
+    const float side = s == right_side ? 1.F : -1.F;
+    const float knee_heading = 0.5F * (foot.heading_rad + c.heading_rad);
+    goal.pole_S = AngleAxisf(knee_heading, Vector3f::UnitZ()) * Vector3f(side * 0.10F, 1, 0.25F);
+    if (const int girdle = figure.joints[at(leg.limb.root)].parent; girdle >= 0 && girdle != a.root) {
+      pose.turn[at(girdle)].setIdentity();
+      update_chain(figure, pose, {girdle});
+    }
+    solved.foot_gap_m[s] = solve_limb(figure, leg.limb, goal, pose);
+    // Toes stay on the floor while the heel comes up.
+    if (leg.toe >= 0) pose.turn[at(leg.toe)] = AngleAxisf(std::max(0.F, foot.pitch_rad), Vector3f::UnitX());
+  }
+}
+
+Turn direction_turn(const Vector3f& d) {
+  return {-std::atan2(d.z(), std::hypot(d.x(), d.y())), 0, std::atan2(-d.x(), d.y())};
+}
+
+void set_head(const Figure& figure, const Anatomy& a, const BodyControls& c, BodyPose& pose) {
+  const Quaternionf trunk = pose.G[at(a.spine.back())];
+  const Vector3f neck = pose.p_S[at(a.spine.back())];
+  const Vector3f head_H =
+      figure.joints[at(a.neck.back())].X_HJ.translation() - figure.joints[at(a.spine.back())].X_HJ.translation();
+  const Vector3f eyes = neck + trunk * (head_H + Vector3f(0, 0.08F, 0.08F));
+  Turn look = direction_turn(trunk.conjugate() * (c.head_gaze_S - eyes));
+  look.yaw = std::clamp(soft_limit(std::abs(look.yaw), 0.6F, 1.2F) * (look.yaw < 0 ? -1.F : 1.F), -1.2F, 1.2F);
+  look.pitch = std::clamp(look.pitch, -radians(42), radians(42));
+  const Turn turn = look * c.head_share + c.head;
+  const Quaternionf each = rotation_of(0, turn * (1.F / static_cast<float>(a.neck.size())));
+  for (const int j : a.neck) pose.turn[at(j)] = each;
+  update_chain(figure, pose, a.neck);
+  const Quaternionf head = pose.G[at(a.neck.back())];
+  if (a.jaw >= 0) pose.turn[at(a.jaw)] = AngleAxisf(-c.jaw_rad, Vector3f::UnitX());
+  for (const int eye : a.eyes) {
+    if (eye < 0) continue;
+    // Eyes may hang below other joints of the face; those do not turn.
+    const Vector3f eye_S = pose.p_S[at(a.neck.back())] + head * (figure.joints[at(eye)].X_HJ.translation() -
+                                                                 figure.joints[at(a.neck.back())].X_HJ.translation());
+    Turn aim = direction_turn(head.conjugate() * (c.gaze_S - eye_S));
+    aim.yaw = std::clamp(aim.yaw, -radians(34), radians(34));
+    aim.pitch = std::clamp(aim.pitch, -radians(24), radians(30));
+    pose.turn[at(eye)] = rotation_of(0, aim);
+  }
+}
+
+// Elbows hang down and a little outward, but not through the table.
+Vector3f elbow_pole(const Anatomy& a, const BodyControls& c, const BodyPose& pose, std::size_t s) {
+  const float side = s == right_side ? 1.F : -1.F;
+  const ArmGoal& goal = c.arms[s];
+  const Vector3f shoulder = pose.p_S[at(a.arms[s].limb.root)];
+  const Quaternionf heading(AngleAxisf(c.heading_rad, Vector3f::UnitZ()));
+  const Vector3f n = (goal.wrist_S - shoulder).normalized();
+  const Vector3f natural = heading * Vector3f(side * 0.62F, -0.35F, -0.75F);
+  const auto turned = [&](float swivel) { return Vector3f(AngleAxisf(-side * swivel, n) * natural); };
+  const auto clearance = [&](float swivel) {
+    const Vector3f elbow = middle_place(a.arms[s].limb, shoulder, goal.wrist_S, turned(swivel));
+    // The table begins softly, so that the elbow does not jump at its edge.
+    const float over = unit_clamp((elbow.y() - c.table_edge_y_m + 0.06F) / 0.10F);
+    return elbow.z() - (c.table_z_m + 0.055F) + (1 - over) * 0.5F;
+  };
+  float low = goal.swivel_rad;
+  if (clearance(low) >= 0) return turned(low);
+  float high = low + radians(110);
+  for (int round = 0; round < 12; ++round) {
+    const float middle = 0.5F * (low + high);
+    (clearance(middle) < 0 ? low : high) = middle;
+  }
+  return turned(high);
+}
+
+void set_arm(const Figure& figure, const Anatomy& a, const BodyControls& c, std::size_t s, SolvedBody& solved) {
+  const ArmGoal& goal = c.arms[s];
+  const HandParts& hand = a.arms[s].hand;
+  LimbGoal limb;
+  limb.end_S = goal.wrist_S;
+  limb.end_G = (goal.R_SW * Quaternionf(hand.R_HW).conjugate()).normalized();
+  limb.pole_S = elbow_pole(a, c, solved.pose, s);
+  solved.arm_gap_m[s] = solve_limb(figure, a.arms[s].limb, limb, solved.pose);
+  apply(figure, hand, goal.shape, solved.pose);
+}
+
+}  // namespace
+
+Quaternionf rotation_of(float heading_rad, const Turn& t) {
+  return Quaternionf(AngleAxisf(heading_rad + t.yaw, Vector3f::UnitZ()) * AngleAxisf(-t.pitch, Vector3f::UnitX()) *
+                     AngleAxisf(t.roll, Vector3f::UnitY()));
+}
+
+void solve_body(const Figure& figure, const Anatomy& a, const BodyControls& c, SolvedBody& solved) {
+  BodyPose& pose = solved.pose;
+  if (pose.turn.size() != figure.joints.size()) pose = bind_pose(figure);
+  const Lean lean = find_lean(figure, a, c, pose);
+  set_trunk(figure, a, c, lean, pose);
+  set_legs(figure, a, c, solved);
+  set_head(figure, a, c, pose);
+  for (const std::size_t s : {left_side, right_side}) set_arm(figure, a, c, s, solved);
+  update(figure, pose);
+}
+
+}  // namespace counterpart

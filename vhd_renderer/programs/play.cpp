@@ -1,0 +1,209 @@
+#include "vhd_renderer/programs/play.hpp"
+
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <sstream>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+#include "protocol/codec/json.hpp"
+#include "protocol/vocabulary/pose_eigen.hpp"
+#include "vhd_renderer/body/build_character.hpp"
+#include "vhd_renderer/composite/composite.hpp"
+#include "vhd_renderer/motion/director.hpp"
+#include "vhd_renderer/output/output.hpp"
+#include "vhd_renderer/programs/backdrop.hpp"
+#include "vhd_renderer/programs/script.hpp"
+#include "vhd_renderer/scene/virtual_scene.hpp"
+
+namespace counterpart {
+namespace {
+
+struct PlayOptions {
+  std::string script;
+  std::string trace;
+  std::string out;
+  std::string background;
+  std::string size = "720x576";
+  std::string opponent;
+  double fps = 25;
+  double seconds = 0;  // 0: until every command has ended
+};
+
+nlohmann::json trace_of(std::int64_t frame, std::int64_t now_ns, const Figure& figure, const Performance& p) {
+  nlohmann::json joints = nlohmann::json::array();
+  for (std::size_t j = 0; j < p.X_BJ.size(); ++j) {
+    const Eigen::Vector3f& t = p.X_BJ[j].translation();
+    joints.push_back({{"name", figure.joints[j].name}, {"x", t.x()}, {"y", t.y()}, {"z", t.z()}});
+  }
+  nlohmann::json pieces = nlohmann::json::array();
+  for (const StagedPiece& piece : p.pieces) {
+    const Eigen::Vector3f& t = piece.X_BP.translation();
+    pieces.push_back({{"name", piece.name}, {"x", t.x()}, {"y", t.y()}, {"z", t.z()}});
+  }
+  return {{"frame", frame}, {"t", 1e-9 * static_cast<double>(now_ns)}, {"joints", joints}, {"pieces", pieces}};
+}
+
+// WIDTHxHEIGHT
+Result<Backdrop> backdrop_of(const PlayOptions& options) {
+  if (!options.background.empty()) return Backdrop::from_sequence(options.background);
+  int width = 0;
+  int height = 0;
+  char times = 0;
+  char more = 0;
+  std::istringstream in(options.size);
+  const bool read = static_cast<bool>(in >> width >> times >> height) && times == 'x' && !(in >> more);
+  if (!read || width < 64 || height < 64 || width > 4096 || height > 4096) {
+    return failure(ErrorCode::invalid_argument, "--size " + options.size + ": give WIDTHxHEIGHT, each from 64 to 4096");
+  }
+  return Backdrop::plain(width, height);
+}
+
+// The film: what the director shows, drawn over the backdrop.
+class Film {
+ public:
+  static Result<Film> open(const PlayOptions& options, const Figure& figure) {
+    auto backdrop = backdrop_of(options);
+    if (!backdrop) return tl::make_unexpected(backdrop.error());
+    auto drawing = VirtualScene::create(backdrop->width(), backdrop->height(), figure);
+    if (!drawing) return tl::make_unexpected(drawing.error());
+    auto output = open_output(options.out);
+    if (!output) return tl::make_unexpected(output.error());
+    return Film(std::move(*backdrop), std::move(*drawing), std::move(*output));
+  }
+
+  Result<BackdropFrame> next(const Scene& scene) { return backdrop_.frame(index_, scene); }
+
+  Result<void> add(const BackdropFrame& behind, const Scene& scene, const Director& director,
+                   const Performance& performance, std::int64_t now_ns) {
+    cv::Mat picture = behind.bgr;
+    if (behind.seen) {
+      const auto drawn = drawing_->draw(behind.view, scene, performance, director.morph_names());
+      if (!drawn) return tl::make_unexpected(drawn.error());
+      CompositeOptions how;
+      how.seed = index_;
+      picture = composite(behind.bgr, *drawn, nullptr, how);
+    }
+    ++index_;
+    return output_->write(picture, now_ns);
+  }
+
+  Result<void> finish() { return output_->finish(); }
+
+ private:
+  Film(Backdrop backdrop, std::unique_ptr<VirtualScene> drawing, std::unique_ptr<Output> output)
+      : backdrop_(std::move(backdrop)), drawing_(std::move(drawing)), output_(std::move(output)) {}
+
+  Backdrop backdrop_;
+  std::unique_ptr<VirtualScene> drawing_;
+  std::unique_ptr<Output> output_;
+  std::size_t index_ = 0;
+};
+
+Result<void> play(const PlayOptions& options) {
+  std::ifstream file(options.script);
+  if (!file) return failure(ErrorCode::not_found, "there is no script " + options.script);
+  const auto script = read_script(file, options.script);
+  if (!script) return tl::make_unexpected(script.error());
+  std::string opponent = options.opponent;
+  std::size_t open = 0;
+  for (const ScriptLine& line : *script) {
+    if (const auto* scene = std::get_if<Scene>(&line.what); scene != nullptr && opponent.empty()) {
+      opponent = scene->opponent;
+    }
+    if (std::holds_alternative<Command>(line.what)) ++open;
+  }
+  auto figure = figure_of(opponent.empty() ? "default" : opponent);
+  if (!figure && options.opponent.empty()) {
+    spdlog::warn("{}; the mannequin plays instead", figure.error().message);
+    figure = figure_of("mannequin");
+  }
+  if (!figure) return tl::make_unexpected(figure.error());
+  std::ofstream trace;
+  if (!options.trace.empty()) {
+    trace.open(options.trace);
+    if (!trace) return failure(ErrorCode::io, "cannot write the trace " + options.trace);
+  }
+
+  std::optional<Film> film;
+  if (!options.out.empty()) {
+    auto opened = Film::open(options, *figure);
+    if (!opened) return tl::make_unexpected(opened.error());
+    film.emplace(std::move(*opened));
+  }
+
+  Director director(*figure);
+  Scene shown;
+  const auto limit = static_cast<std::int64_t>((options.seconds > 0 ? options.seconds : 3600) * options.fps);
+  std::size_t next = 0;
+  std::int64_t last = limit;
+  for (std::int64_t frame = 0; frame < std::min(limit, last); ++frame) {
+    DirectorInputs inputs;
+    inputs.now_ns = static_cast<std::int64_t>(static_cast<double>(frame) * 1e9 / options.fps);
+    const Scene* scene = nullptr;
+    for (; next < script->size() && (*script)[next].at_ms * 1'000'000 <= inputs.now_ns; ++next) {
+      if (const auto* command = std::get_if<Command>(&(*script)[next].what)) inputs.commands.push_back(*command);
+      if (const auto* given = std::get_if<Scene>(&(*script)[next].what)) scene = given;
+    }
+    inputs.scene = scene;
+    if (scene != nullptr) shown = *scene;
+    BackdropFrame behind;
+    if (film) {
+      auto frame_behind = film->next(shown);
+      if (!frame_behind) return tl::make_unexpected(frame_behind.error());
+      behind = std::move(*frame_behind);
+      if (behind.seen) inputs.camera_B = to_point(camera_position_B(behind.view));
+    }
+    const Performance performance = director.step(inputs);
+    for (const Feedback& feedback : performance.feedback) {
+      std::cout << to_json_text(feedback) << '\n';
+      if (is_final(feedback.state) && open > 0) --open;
+    }
+    if (film) {
+      if (auto added = film->add(behind, shown, director, performance, inputs.now_ns); !added) return added;
+    }
+    if (trace.is_open()) trace << trace_of(frame, inputs.now_ns, *figure, performance).dump() << '\n';
+    // A second of stillness at the end.
+    if (open == 0 && next == script->size() && options.seconds <= 0 && last == limit) {
+      last = frame + static_cast<std::int64_t>(options.fps);
+    }
+  }
+  std::cout.flush();
+  if (film) {
+    if (auto finished = film->finish(); !finished) return finished;
+  }
+  if (trace.is_open() && !trace.flush()) return failure(ErrorCode::io, "the trace could not be written whole");
+  return {};
+}
+
+}  // namespace
+
+void add_play(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<PlayOptions>();
+  CLI::App* command =
+      app.add_subcommand("play", "Plays a script of commands offline; every answer is a JSON line on stdout");
+  command->add_option("script", options->script, "JSON lines: commands and scenes with at_ms")->required();
+  command->add_option("--trace", options->trace, "a JSON line a frame: every joint and piece in B, metres");
+  command->add_option("--out", options->out, "FILE.mp4, or a folder for pictures; without it nothing is drawn");
+  command->add_option("--background", options->background,
+                      "a SEQUENCE folder: pictures, camera.json, poses.csv; without it a plain room is painted");
+  command->add_option("--size", options->size, "of the picture with the plain room, WIDTHxHEIGHT")
+      ->capture_default_str();
+  command->add_option("--opponent", options->opponent,
+                      "which human: default, ines, kenji, amara, mannequin, a GLB file");
+  command->add_option("--fps", options->fps, "frames a second")->check(CLI::Range(1.0, 240.0))->capture_default_str();
+  command->add_option("--seconds", options->seconds, "how long; 0: until every command has ended")
+      ->check(CLI::Range(0.0, 36000.0));
+  command->callback([options, &exit_code] {
+    if (auto played = play(*options); !played) {
+      spdlog::error("{}", played.error().message);
+      exit_code = 1;
+    }
+  });
+}
+
+}  // namespace counterpart
