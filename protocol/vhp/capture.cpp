@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-struct Arguments {
+struct CaptureArguments {
   std::string file, second;
   std::string type;
   std::uint64_t limit = 0;
@@ -40,7 +40,7 @@ Tally count(SessionReader& reader) {
   return tally;
 }
 
-int info(const Arguments& arguments) {
+int capture_info(const CaptureArguments& arguments) {
   auto reader = SessionReader::open(arguments.file);
   if (!reader) return fail(reader.error());
   const Tally tally = count(**reader);
@@ -70,7 +70,7 @@ int info(const Arguments& arguments) {
   return good ? kFine : fail(*(*reader)->problem());
 }
 
-int cat(const Arguments& arguments) {
+int capture_cat(const CaptureArguments& arguments) {
   auto reader = SessionReader::open(arguments.file);
   if (!reader) return fail(reader.error());
   std::uint64_t shown = 0;
@@ -90,7 +90,7 @@ int cat(const Arguments& arguments) {
   return all_read && (*reader)->problem() ? fail(*(*reader)->problem()) : kFine;
 }
 
-int doctor(const Arguments& arguments) {
+int capture_doctor(const CaptureArguments& arguments) {
   const auto checkup = check_capture(arguments.file);
   if (!checkup) return fail(checkup.error());
   if (arguments.json) {
@@ -108,7 +108,7 @@ int doctor(const Arguments& arguments) {
   return checkup->damage.empty() ? kFine : kFailed;
 }
 
-int recover(const Arguments& arguments) {
+int capture_recover(const CaptureArguments& arguments) {
   if (arguments.file == arguments.second) {
     return fail({ErrorCode::invalid_argument, "the recovered capture needs another name"});
   }
@@ -127,7 +127,7 @@ int recover(const Arguments& arguments) {
   return kFine;
 }
 
-int diff(const Arguments& arguments) {
+int capture_diff(const CaptureArguments& arguments) {
   const auto differences =
       compare_captures(arguments.file, arguments.second, arguments.limit == 0 ? 20 : arguments.limit);
   if (!differences) return fail(differences.error());
@@ -143,14 +143,14 @@ int diff(const Arguments& arguments) {
 }  // namespace
 
 void add_capture(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CaptureArguments>();
   CLI::App* command = app.add_subcommand("capture", "Looks into captures");
   command->require_subcommand(1);
 
   CLI::App* info_command = command->add_subcommand("info", "What a capture holds, and whether it is whole");
   info_command->add_option("file", arguments->file, "The capture")->required();
   info_command->add_flag("--json", arguments->json, "As one JSON object");
-  info_command->callback([arguments, &exit_code] { exit_code = info(*arguments); });
+  info_command->callback([arguments, &exit_code] { exit_code = capture_info(*arguments); });
 
   CLI::App* cat_command = command->add_subcommand("cat", "Every message as a JSON line");
   cat_command->add_option("file", arguments->file, "The capture")->required();
@@ -163,22 +163,22 @@ void add_capture(CLI::App& app, int& exit_code) {
   CLI::App* doctor_command = command->add_subcommand("doctor", "Looks for damage, gaps and unanswered commands");
   doctor_command->add_option("file", arguments->file, "The capture")->required();
   doctor_command->add_flag("--json", arguments->json, "As one JSON object");
-  doctor_command->callback([arguments, &exit_code] { exit_code = doctor(*arguments); });
+  doctor_command->callback([arguments, &exit_code] { exit_code = capture_doctor(*arguments); });
 
   CLI::App* recover_command = command->add_subcommand("recover", "Saves what is whole in a damaged capture");
   recover_command->add_option("file", arguments->file, "The damaged capture")->required();
   recover_command->add_option("new", arguments->second, "The capture to write")->required();
   recover_command->add_flag("--json", arguments->json, "Result as JSON");
-  recover_command->callback([arguments, &exit_code] { exit_code = recover(*arguments); });
+  recover_command->callback([arguments, &exit_code] { exit_code = capture_recover(*arguments); });
 
   CLI::App* diff_command = command->add_subcommand("diff", "Whether two captures say the same, stamps apart");
   diff_command->add_option("a", arguments->file, "A capture")->required();
   diff_command->add_option("b", arguments->second, "Another one")->required();
   diff_command->add_option("--limit", arguments->limit, "Differences to show; 0: 20");
   diff_command->add_flag("--json", arguments->json, "Result as JSON");
-  diff_command->callback([arguments, &exit_code] { exit_code = diff(*arguments); });
+  diff_command->callback([arguments, &exit_code] { exit_code = capture_diff(*arguments); });
 
-  cat_command->callback([arguments, &exit_code] { exit_code = cat(*arguments); });
+  cat_command->callback([arguments, &exit_code] { exit_code = capture_cat(*arguments); });
 }
 
 }  // namespace counterpart::vhp

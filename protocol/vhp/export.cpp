@@ -11,11 +11,11 @@
 namespace counterpart::vhp {
 namespace {
 
-struct Arguments {
+struct ExportArguments {
   std::string format, file, out = "-";
 };
 
-int run(const Arguments& arguments) {
+int run_export(const ExportArguments& arguments) {
   auto reader = SessionReader::open(arguments.file);
   if (!reader) return fail(reader.error());
   std::ofstream file;
@@ -39,14 +39,14 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void add_export(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = app.add_subcommand("export", "Writes a capture for other programs");
   command->add_option("format", arguments->format, "csv (poses), pdn (games) or opentrackio (camera)")
       ->required()
       ->check(CLI::IsMember({"csv", "pdn", "opentrackio"}));
   command->add_option("file", arguments->file, "The capture")->required();
   command->add_option("--out", arguments->out, "File to write; - is stdout")->capture_default_str();
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  command->callback([arguments, &exit_code] { exit_code = run_export(*arguments); });
 }
 
 }  // namespace counterpart::vhp

@@ -7,13 +7,14 @@
 
 #include "protocol/capture/session_reader.hpp"
 #include "protocol/codec/names.hpp"
+#include "protocol/transport/monotonic_clock.hpp"
 #include "protocol/vhp/commands.hpp"
 #include "protocol/vhp/common.hpp"
 
 namespace counterpart::vhp {
 namespace {
 
-struct Arguments {
+struct ReplayArguments {
   std::string file;
   std::string role;
   std::string listen, connect;
@@ -23,7 +24,7 @@ struct Arguments {
   double patience_s = 60;
 };
 
-Result<std::unique_ptr<Endpoint>> open_end(const Arguments& arguments, Role role) {
+Result<std::unique_ptr<Endpoint>> open_end(const ReplayArguments& arguments, Role role) {
   LinkOptions options;
   options.role = role;
   options.software = "vhp " COUNTERPART_VERSION " replay";
@@ -43,9 +44,9 @@ std::optional<FrameId> pace_of(const Message& message, Role role) {
 }
 
 // The live peer.
-class Peer {
+class LivePeer {
  public:
-  Peer(Endpoint& endpoint, Role role) : endpoint_(endpoint), role_(role) {}
+  LivePeer(Endpoint& endpoint, Role role) : endpoint_(endpoint), role_(role) {}
 
   void listen(std::int64_t timeout_ns) {
     for (const Inbound& inbound : endpoint_.receive(timeout_ns)) {
@@ -77,13 +78,13 @@ class Peer {
 };
 
 // Reads away what the live peer answers, so that it never has to wait for us.
-void wait_until(Peer& peer, std::int64_t when_ns) {
+void wait_until(LivePeer& peer, std::int64_t when_ns) {
   do {
     peer.listen(std::clamp<std::int64_t>(when_ns - monotonic_ns(), 0, 20'000'000));
   } while (!interrupted() && monotonic_ns() < when_ns);
 }
 
-int play(const Arguments& arguments, SessionReader& reader, Endpoint& endpoint, Peer& peer, Role role) {
+int play(const ReplayArguments& arguments, SessionReader& reader, Endpoint& endpoint, LivePeer& peer, Role role) {
   std::optional<FrameId> gate;  // how far the other side was when this was said
   std::uint64_t sent = 0;
   std::int64_t capture_start = 0, start = 0;
@@ -118,14 +119,14 @@ int play(const Arguments& arguments, SessionReader& reader, Endpoint& endpoint, 
   return interrupted() ? kFailed : kFine;
 }
 
-int run(const Arguments& arguments) {
+int run_replay(const ReplayArguments& arguments) {
   const auto role = from_name<Role>(arguments.role);
   auto reader = SessionReader::open(arguments.file);
   if (!reader) return fail(reader.error());
   auto endpoint = open_end(arguments, *role);
   if (!endpoint) return fail(endpoint.error());
   if (!arguments.listen.empty()) std::cerr << "waiting for a peer on " << (*endpoint)->address() << '\n';
-  Peer peer(**endpoint, *role);
+  LivePeer peer(**endpoint, *role);
   if (!peer.wait(arguments.patience_s, [&] { return peer.joined(); })) {
     return fail({ErrorCode::timeout, "no peer came within " + std::to_string(arguments.patience_s) + " s"});
   }
@@ -135,7 +136,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void add_replay(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReplayArguments>();
   CLI::App* command = app.add_subcommand("replay", "Plays one side of a capture to a live peer");
   command->add_option("file", arguments->file, "The capture")->required()->check(CLI::ExistingFile);
   command->add_option("--as", arguments->role, "Whose messages: tracker, renderer or camera")
@@ -156,7 +157,7 @@ void add_replay(CLI::App& app, int& exit_code) {
     if (arguments->listen.empty() == arguments->connect.empty()) {
       throw CLI::ValidationError("replay", "give --listen HOST:PORT or --connect HOST:PORT");
     }
-    exit_code = run(*arguments);
+    exit_code = run_replay(*arguments);
   });
 }
 

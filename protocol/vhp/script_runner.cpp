@@ -11,6 +11,7 @@
 
 #include "protocol/codec/json.hpp"
 #include "protocol/codec/names.hpp"
+#include "protocol/transport/monotonic_clock.hpp"
 #include "protocol/vhp/commands.hpp"
 #include "protocol/vhp/common.hpp"
 #include "protocol/vhp/script.hpp"
@@ -18,7 +19,7 @@
 namespace counterpart::vhp {
 namespace {
 
-struct Arguments {
+struct ScriptArguments {
   std::string file;
   std::string renderer = "127.0.0.1:7402", tracker = "127.0.0.1:7401";
   std::string token_file;
@@ -37,7 +38,7 @@ bool needs(const std::vector<Statement>& statements, bool tracker) {
 
 class Runner {
  public:
-  explicit Runner(const Arguments& arguments) : arguments_(arguments) {}
+  explicit Runner(const ScriptArguments& arguments) : arguments_(arguments) {}
 
   Result<void> open(const std::vector<Statement>& statements) {
     for (const bool tracker : {false, true}) {
@@ -227,7 +228,7 @@ class Runner {
     }
   }
 
-  const Arguments& arguments_;
+  const ScriptArguments& arguments_;
   std::unique_ptr<Endpoint> renderer_, tracker_;
   std::map<std::string, std::uint64_t> ids_;
   std::map<std::uint64_t, std::optional<Feedback>> answers_;
@@ -236,7 +237,7 @@ class Runner {
   std::uint64_t last_id_ = 0;
 };
 
-int run(const Arguments& arguments) {
+int run_script(const ScriptArguments& arguments) {
   std::ifstream file(arguments.file);
   const bool from_stdin = arguments.file == "-";
   if (!from_stdin && !file) return fail({ErrorCode::not_found, "the script " + arguments.file + " cannot be opened"});
@@ -258,7 +259,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void add_script(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ScriptArguments>();
   CLI::App* command = app.add_subcommand("script", "Runs a scenario: commands, waits, loops and expectations");
   command->add_option("file", arguments->file, "The scenario; - reads it from stdin")->required();
   command->add_option("--renderer", arguments->renderer, "Where commands go")->capture_default_str();
@@ -267,7 +268,7 @@ void add_script(CLI::App& app, int& exit_code) {
   command->add_option("--patience", arguments->patience_s, "Seconds to wait for the peers")->check(CLI::PositiveNumber);
   command->add_flag("--check", arguments->check, "Only read the scenario");
   command->add_flag("--json", arguments->json, "One JSON object for every statement");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  command->callback([arguments, &exit_code] { exit_code = run_script(*arguments); });
 }
 
 }  // namespace counterpart::vhp

@@ -4,6 +4,7 @@
 
 #include "protocol/codec/json.hpp"
 #include "protocol/codec/names.hpp"
+#include "protocol/transport/monotonic_clock.hpp"
 #include "protocol/vhp/commands.hpp"
 #include "protocol/vhp/common.hpp"
 #include "protocol/vhp/request.hpp"
@@ -11,7 +12,7 @@
 namespace counterpart::vhp {
 namespace {
 
-struct Arguments {
+struct SendArguments {
   LinkArguments link;
   std::shared_ptr<Request> request = std::make_shared<Request>();
   double timeout_s = 60;
@@ -19,7 +20,7 @@ struct Arguments {
   bool json = false;
 };
 
-void print(const Arguments& arguments, const Feedback& feedback) {
+void print_feedback(const SendArguments& arguments, const Feedback& feedback) {
   if (arguments.json) {
     std::cout << to_json_text(feedback) << std::endl;
     return;
@@ -31,7 +32,7 @@ void print(const Arguments& arguments, const Feedback& feedback) {
   std::cout << std::endl;
 }
 
-int wait_for_answer(const Arguments& arguments, Endpoint& endpoint) {
+int wait_for_answer(const SendArguments& arguments, Endpoint& endpoint) {
   const std::int64_t until = monotonic_ns() + static_cast<std::int64_t>(arguments.timeout_s * 1e9);
   while (!interrupted() && monotonic_ns() < until) {
     for (const Inbound& inbound : endpoint.receive(50'000'000)) {
@@ -43,7 +44,7 @@ int wait_for_answer(const Arguments& arguments, Endpoint& endpoint) {
       }
       const auto* feedback = std::get_if<Feedback>(&received->message);
       if (feedback == nullptr || feedback->command_id != arguments.request->command.id) continue;
-      print(arguments, *feedback);
+      print_feedback(arguments, *feedback);
       if (is_final(feedback->state)) return feedback->state == FeedbackState::finished ? kFine : kFailed;
     }
   }
@@ -66,7 +67,7 @@ int wait_until_taken(Endpoint& endpoint) {
   return fail({ErrorCode::timeout, "the peer did not take the message within 3 s"});
 }
 
-int run(Arguments& arguments) {
+int run_send(SendArguments& arguments) {
   Request& request = *arguments.request;
   if (arguments.link.address.empty()) {
     arguments.link.address = request.is_control ? "127.0.0.1:7401" : "127.0.0.1:7402";
@@ -85,7 +86,7 @@ int run(Arguments& arguments) {
 }  // namespace
 
 void add_send(CLI::App& app, int& exit_code) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<SendArguments>();
   CLI::App* send = app.add_subcommand("send", "Sends one command (or control) and waits for its final answer");
   send->require_subcommand(1);
   send->add_option("--to", a->link.address,
@@ -97,7 +98,7 @@ void add_send(CLI::App& app, int& exit_code) {
   send->add_option("--token-file", a->link.token_file, "The shared token, for other hosts");
   send->add_flag("--json", a->json, "Answers as JSON lines");
   add_request(*send, a->request);
-  send->callback([a, &exit_code] { exit_code = run(*a); });
+  send->callback([a, &exit_code] { exit_code = run_send(*a); });
 }
 
 }  // namespace counterpart::vhp
