@@ -10,6 +10,10 @@ namespace {
 // A program that does not read for a while finds the newest pictures, not all of them.
 constexpr int kMostPictures = 8;
 
+// An acknowledgement of its own would wake the peer for nothing if an answer goes out a moment later.
+constexpr std::int64_t kAcknowledgeWithin = 5'000'000;
+constexpr std::size_t kMostUnacknowledgedBytes = 128U << 10;
+
 std::size_t weight(const Message& message) {
   const auto* video = std::get_if<VideoFrame>(&message);
   return 512 + (video != nullptr ? video->bytes.size() : 0);
@@ -40,7 +44,13 @@ void Hub::read(ConnectionId id, std::size_t count, std::int64_t now_ns) {
   }
 }
 
-Result<void> Hub::on_message(ConnectionId id, Connection& connection, const RawMessage& raw, std::int64_t now_ns) {
+void Hub::acknowledge_soon(Connection& connection, std::size_t bytes, std::int64_t now_ns) {
+  connection.unacknowledged_bytes += bytes;
+  if (connection.acknowledge_by_ns < 0) connection.acknowledge_by_ns = now_ns + kAcknowledgeWithin;
+  if (connection.unacknowledged_bytes >= kMostUnacknowledgedBytes) connection.acknowledge_by_ns = now_ns;
+}
+
+Result<void> Hub::on_message(ConnectionId id, Connection& connection, RawMessage& raw, std::int64_t now_ns) {
   if (tap_ != nullptr) {
     tap_->saw(true, connection.lane == LaneName::video, connection.peer, raw.header_bytes, raw.body, now_ns);
   }
@@ -52,7 +62,7 @@ Result<void> Hub::on_message(ConnectionId id, Connection& connection, const RawM
   const bool open = connection.stage == Stage::open && peer != nullptr;
   if (open && (raw.header.flags & kFlagKept) != 0) {
     const auto arrival = lane_of(*peer, connection.lane).arrived(raw.header.seq);
-    connection.acknowledge = true;
+    acknowledge_soon(connection, kHeaderSize + raw.body.size(), now_ns);
     if (arrival == Lane::Arrival::duplicate) return {};
     if (arrival == Lane::Arrival::gap) {
       return failure(ErrorCode::bad_format,
@@ -63,7 +73,8 @@ Result<void> Hub::on_message(ConnectionId id, Connection& connection, const RawM
     if (peer != nullptr) ++peer->counts.skipped;
     return {};
   }
-  auto message = decode(static_cast<MessageType>(raw.header.type), raw.body);
+  const auto type = static_cast<MessageType>(raw.header.type);
+  auto message = open ? decode(type, std::move(raw.body)) : decode(type, raw.body);
   if (!message) {
     if (open) end_session(*peer, message.error(), now_ns);
     return tl::make_unexpected(message.error());
