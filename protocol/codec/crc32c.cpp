@@ -12,8 +12,8 @@ namespace {
 constexpr CrcTables kCastagnoli = make_crc_tables(0x82F63B78);  // 0x1EDC6F41, bits reversed
 
 #if defined(__x86_64__)
-// The instruction takes three cycles, but three can be under way at a time: large bodies are read in three stripes, whose
-// checksums are put together again.
+// The instruction takes three cycles, but three can be under way at a time: large bodies are read in three stripes,
+// whose checksums are put together again.
 constexpr std::size_t kStripe = 1024;
 
 // What a checksum becomes when a stripe of zeros follows. That is linear, so it can be looked up byte by byte.

@@ -26,7 +26,7 @@ using asio::ip::tcp;
 using boost::system::error_code;
 
 constexpr auto kGoodbyeLimit = std::chrono::milliseconds(300);
-constexpr std::size_t kMostAtOnce = 32;  // messages in one write
+constexpr std::size_t kMostAtOnce = 32;   // messages in one write
 constexpr std::size_t kSmallBody = 1024;  // is cheaper to copy than to name
 constexpr std::size_t kMostBytesAtOnce = 256U << 10;
 constexpr int kMostReadsInARow = 64;
@@ -96,7 +96,7 @@ struct Link {
   std::vector<WireMessage> writing;
   Bytes staging;
   std::vector<iovec> buffers;  // what is left to write
-  bool blocked = false;              // the socket takes no more for now
+  bool blocked = false;        // the socket takes no more for now
   error_code broken;
   asio::posix::stream_descriptor watch;
   std::uint64_t round = 0;  // waits of an earlier round no longer count
@@ -516,8 +516,8 @@ class TcpEndpoint : public Endpoint {
   static void stage(Link& link, ByteView bytes) {
     std::uint8_t* const end = link.staging.data() + link.staging.size();
     link.staging.insert(link.staging.end(), bytes.begin(), bytes.end());
-    const bool goes_on = !link.buffers.empty() && static_cast<std::uint8_t*>(link.buffers.back().iov_base) +
-                                                          link.buffers.back().iov_len == end;
+    const bool goes_on = !link.buffers.empty() &&
+                         static_cast<std::uint8_t*>(link.buffers.back().iov_base) + link.buffers.back().iov_len == end;
     if (goes_on) {
       link.buffers.back().iov_len += bytes.size();
     } else {
