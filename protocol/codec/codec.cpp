@@ -29,11 +29,11 @@ tl::unexpected<Error> bad(MessageType type, const char* problem) {
 }
 
 bool is_sane(const PoseEstimate& m) {
-  double norm = 0;
+  double norm = 0;  // of the quaternion, squared; its length is within 0.001 of 1
   for (const double q : m.X_CB.q) norm += q * q;
-  bool sane = std::abs(std::sqrt(norm) - 1) < 1e-3;
-  for (const double p : m.X_CB.p) sane = sane && std::abs(p) <= 1e6;
-  for (const float c : m.covariance) sane = sane && std::isfinite(c);
+  bool sane = norm > 0.999 * 0.999 && norm < 1.001 * 1.001;
+  for (const double p : m.X_CB.p) sane &= std::abs(p) <= 1e6;
+  for (const float c : m.covariance) sane &= std::isfinite(c);
   sane = sane && m.rms_px >= 0 && std::isfinite(m.rms_px) && m.seen_share >= 0 && m.seen_share <= 1;
   return sane && !name_of(m.status).empty();
 }

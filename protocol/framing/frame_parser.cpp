@@ -49,6 +49,7 @@ Result<std::optional<RawMessage>> FrameParser::next() {
     }
     begin_ += kHeaderSize;
     message.header = *header;
+    message.body = std::exchange(spare_, {});
     open_ = std::move(message);
     body_have_ = 0;
   }
@@ -66,6 +67,12 @@ Result<std::optional<RawMessage>> FrameParser::next() {
   std::optional<RawMessage> whole = std::move(open_);
   open_.reset();
   return whole;
+}
+
+void FrameParser::reuse(Bytes&& body) {
+  if (body.capacity() > kBufferSize) return;  // large ones are rare, and would only be held
+  spare_ = std::move(body);
+  spare_.clear();
 }
 
 std::size_t FrameParser::feed(ByteView bytes) {

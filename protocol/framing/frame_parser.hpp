@@ -28,6 +28,9 @@ class FrameParser {
   // The next whole message; empty: more bytes are needed.
   [[nodiscard]] Result<std::optional<RawMessage>> next();
 
+  // Takes back the memory of a body that is done with, for the next one.
+  void reuse(Bytes&& body);
+
   // Copies bytes in and hands out nothing: for tests, files and memory links. next() must be called until empty first
   // and then again for every part that did not fit; returns how many bytes were taken.
   std::size_t feed(ByteView bytes);
@@ -42,6 +45,7 @@ class FrameParser {
   std::size_t begin_ = 0, end_ = 0;  // of the unread bytes in buffer_
   std::optional<RawMessage> open_;   // header read, body on its way
   std::size_t body_have_ = 0;        // of header.length
+  Bytes spare_;
   std::optional<Error> failed_;
 
   static constexpr std::size_t kBufferSize = 64U << 10;

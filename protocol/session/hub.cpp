@@ -383,8 +383,7 @@ void Hub::report(PeerId peer, const Error& error, std::int64_t now_ns) {
 }
 
 std::vector<Inbound> Hub::take_inbound() {
-  std::vector<Inbound> taken(std::make_move_iterator(inbound_.begin()), std::make_move_iterator(inbound_.end()));
-  inbound_.clear();
+  std::vector<Inbound> taken = std::exchange(inbound_, {});
   inbound_bytes_ = 0;
   for (auto& [id, peer] : peers_) peer.pictures_waiting = 0;
   return taken;

@@ -173,8 +173,8 @@ class Hub {
   [[nodiscard]] Result<void> on_message(ConnectionId id, Connection& connection, RawMessage& raw, std::int64_t now_ns);
   void acknowledge_soon(Connection& connection, std::size_t bytes, std::int64_t now_ns);
   [[nodiscard]] Result<void> on_open_message(ConnectionId id, Connection& connection, const Header& header,
-                                             Message message, std::int64_t now_ns);
-  void deliver(Peer& peer, Message message, std::int64_t now_ns);
+                                             Message&& message, std::int64_t now_ns);
+  void deliver(Peer& peer, Message&& message, std::int64_t now_ns);
 
   End end_;
   LinkOptions options_;
@@ -183,7 +183,7 @@ class Hub {
   std::map<ConnectionId, Connection> connections_;
   std::map<PeerId, Peer> peers_;
   std::map<std::uint64_t, PeerId> sessions_;
-  std::deque<Inbound> inbound_;
+  std::vector<Inbound> inbound_;
   std::size_t inbound_bytes_ = 0;
   ConnectionId last_connection_ = 0;
   PeerId last_peer_ = 0;

@@ -36,6 +36,7 @@ void Hub::read(ConnectionId id, std::size_t count, std::int64_t now_ns) {
       if (connection.stage != Stage::closing) fail(id, connection, done.error(), now_ns);
       return;
     }
+    connection.parser.reuse(std::move((*raw)->body));
   }
   if (!connection.parser.inside_message()) {
     connection.message_began_ns = -1;
@@ -83,7 +84,7 @@ Result<void> Hub::on_message(ConnectionId id, Connection& connection, RawMessage
   return on_open_message(id, connection, raw.header, std::move(*message), now_ns);
 }
 
-Result<void> Hub::on_open_message(ConnectionId id, Connection& connection, const Header& header, Message message,
+Result<void> Hub::on_open_message(ConnectionId id, Connection& connection, const Header& header, Message&& message,
                                   std::int64_t now_ns) {
   Peer& peer = *peer_of(connection);
   switch (static_cast<MessageType>(header.type)) {
@@ -128,7 +129,7 @@ Result<void> Hub::on_open_message(ConnectionId id, Connection& connection, const
   }
 }
 
-void Hub::deliver(Peer& peer, Message message, std::int64_t now_ns) {
+void Hub::deliver(Peer& peer, Message&& message, std::int64_t now_ns) {
   const bool picture = std::holds_alternative<VideoFrame>(message);
   if (picture && !peer.lockstep && ++peer.pictures_waiting > kMostPictures) {
     const auto oldest = std::find_if(inbound_.begin(), inbound_.end(), [&](const Inbound& inbound) {
@@ -143,7 +144,7 @@ void Hub::deliver(Peer& peer, Message message, std::int64_t now_ns) {
     }
   }
   inbound_bytes_ += weight(message);
-  inbound_.push_back(Received{peer.id, std::move(message), now_ns});
+  inbound_.emplace_back(Received{peer.id, std::move(message), now_ns});
 }
 
 }  // namespace counterpart

@@ -195,16 +195,18 @@ class TcpEndpoint : public Endpoint {
     auto outgoing = make_outgoing(message, options_.video_codec);
     const std::lock_guard lock(mutex_);
     if (!outgoing) return refuse(peer, outgoing.error());
-    hub_.send(peer, *outgoing, monotonic_ns());
-    after_send();
+    const std::int64_t now_ns = monotonic_ns();
+    hub_.send(peer, *outgoing, now_ns);
+    after_send(now_ns);
   }
 
   void broadcast(const Message& message) override {
     auto outgoing = make_outgoing(message, options_.video_codec);
     const std::lock_guard lock(mutex_);
     if (!outgoing) return refuse(0, outgoing.error());
-    hub_.broadcast(*outgoing, monotonic_ns());
-    after_send();
+    const std::int64_t now_ns = monotonic_ns();
+    hub_.broadcast(*outgoing, now_ns);
+    after_send(now_ns);
   }
 
   // A program that waits here reads the sockets itself: a message then costs one wake-up less.
@@ -314,10 +316,10 @@ class TcpEndpoint : public Endpoint {
                             });
   }
 
-  void after_send() {
+  void after_send(std::int64_t now_ns) {
     bool over = hub_.has_inbound();
     for (const auto& [id, link] : links_) {
-      flush(*link);
+      flush(*link, now_ns);
       if (link->blocked) watch(link);
       over = over || link->broken || hub_.finished(id);
     }
@@ -379,7 +381,7 @@ class TcpEndpoint : public Endpoint {
       while (const auto lane = hub_.wants_to_dial(monotonic_ns())) dial(*lane);
     }
     for (const auto& link : all_links()) {
-      flush(*link);
+      flush(*link, monotonic_ns());
       watch(link);
       reap(*link);
     }
@@ -465,9 +467,9 @@ class TcpEndpoint : public Endpoint {
     }
   }
 
-  void flush(Link& link) {
+  void flush(Link& link, std::int64_t now_ns) {
     while (!link.blocked && !link.broken) {
-      if (link.buffers.empty() && !gather(link)) return;
+      if (link.buffers.empty() && !gather(link, now_ns)) return;
       const ssize_t count = write_some(link);
       if (count >= 0) {
         consume(link, static_cast<std::size_t>(count));
@@ -490,11 +492,10 @@ class TcpEndpoint : public Endpoint {
     return ::sendmsg(link.socket, &message, kFlags);
   }
 
-  bool gather(Link& link) {
+  bool gather(Link& link, std::int64_t now_ns) {
     link.writing.clear();
     link.staging.clear();
     link.staging.reserve(kMostAtOnce * (kHeaderSize + kSmallBody));  // so that it stays where it is
-    const std::int64_t now_ns = monotonic_ns();
     std::size_t bytes = 0;
     for (std::size_t count = 0; count < kMostAtOnce && bytes < kMostBytesAtOnce; ++count) {
       auto message = hub_.next_to_write(link.id, now_ns);
