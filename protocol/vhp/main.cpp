@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   add_script(app, exit_code);
   add_capture(app, exit_code);
   add_export(app, exit_code);
+  add_completion(app, exit_code);
   catch_interrupts();
   try {
     app.parse(argc, argv);

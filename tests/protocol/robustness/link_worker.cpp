@@ -1,8 +1,7 @@
-// One end of a link as a program that may be killed at any moment: what it has done is in its journal before it says
-// so.
-//   link_worker tracker LISTEN JOURNAL COUNT     has commands 1..COUNT carried out; a line "ID" for each that was
-//   answered link_worker renderer ADDRESS JOURNAL         carries them out: a line "ID" each; "twice ID" if the link
-//   gave one twice
+// One end of a link as a program that may be killed at any moment: what it has done is in its journal before it says so.
+//   link_worker tracker LISTEN JOURNAL COUNT     has commands 1..COUNT carried out; a line "ID" for each answer
+//   link_worker renderer ADDRESS JOURNAL         carries them out; a line "ID" each, "twice ID" if the link gave one twice
+//   link_worker recorder CAPTURE                 records command 1, 2, ... until it is killed
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -13,7 +12,10 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "protocol/capture/recorder.hpp"
+#include "protocol/codec/codec.hpp"
 #include "protocol/transport/endpoint.hpp"
+#include "protocol/transport/monotonic_clock.hpp"
 
 namespace {
 
@@ -111,6 +113,23 @@ int carry_out(Endpoint& link, Journal& journal) {
   }
 }
 
+int record(const std::string& path) {
+  auto recorder = Recorder::open(path, Role::tracker, "link_worker");
+  if (!recorder) return 1;
+  std::fprintf(stderr, "recording\n");
+  for (std::uint64_t id = 1;; ++id) {
+    Command command;
+    command.id = id;
+    command.action = Say{"hello", "en", ""};
+    const Bytes body = *encode(command);
+    Header header;
+    header.type = static_cast<std::uint16_t>(MessageType::command);
+    header.seq = id;
+    (*recorder)->saw(false, false, 1, seal(header, body), body, monotonic_ns());
+    ::usleep(200);
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -123,6 +142,8 @@ int main(int argc, char** argv) {
     Journal journal(argv[3]);
     return carry_out(*take(connect_tcp(argv[2], worker_options(Role::renderer))), journal);
   }
-  std::fprintf(stderr, "usage: link_worker tracker LISTEN JOURNAL COUNT | link_worker renderer ADDRESS JOURNAL\n");
+  if (argc == 3 && std::string(argv[1]) == "recorder") return record(argv[2]);
+  std::fprintf(stderr,
+               "usage: link_worker tracker LISTEN JOURNAL COUNT | renderer ADDRESS JOURNAL | recorder CAPTURE\n");
   return 2;
 }
