@@ -1,7 +1,8 @@
-// One end of a link as a program that may be killed at any moment: what it has done is in its journal before it says so.
+// One end of a link as a program that may be killed at any moment: what it has done is in its journal before it says
+// so.
 //   link_worker tracker LISTEN JOURNAL COUNT     has commands 1..COUNT carried out; a line "ID" for each answer
-//   link_worker renderer ADDRESS JOURNAL         carries them out; a line "ID" each, "twice ID" if the link gave one twice
-//   link_worker recorder CAPTURE                 records command 1, 2, ... until it is killed
+//   link_worker renderer ADDRESS JOURNAL         carries them out; a line "ID" each, "twice ID" if the link gave one
+//   twice link_worker recorder CAPTURE                 records command 1, 2, ... until it is killed
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>

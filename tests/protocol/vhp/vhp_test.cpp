@@ -75,8 +75,8 @@ TEST(Vhp, WrongUsageIsExitCodeTwoWithASentence) {
 
 // The words that bash offers after these.
 std::string completed(const std::string& words) {
-  const std::string line = "PATH=" COUNTERPART_BIN_DIR ":$PATH bash -c 'eval \"$(vhp completion)\"; COMP_WORDS=(" + words +
-                           "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _vhp; echo \"${COMPREPLY[*]}\"'";
+  const std::string line = "PATH=" COUNTERPART_BIN_DIR ":$PATH bash -c 'eval \"$(vhp completion)\"; COMP_WORDS=(" +
+                           words + "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _vhp; echo \"${COMPREPLY[*]}\"'";
   std::string out;
   FILE* pipe = popen(line.c_str(), "r");
   std::array<char, 4096> buffer{};
