@@ -380,29 +380,26 @@ class TcpEndpoint : public Endpoint {
     if (!leaving_) {
       while (const auto lane = hub_.wants_to_dial(monotonic_ns())) dial(*lane);
     }
-    for (const auto& link : all_links()) {
-      flush(*link, monotonic_ns());
+    const std::int64_t now_ns = monotonic_ns();
+    std::vector<std::shared_ptr<Link>> over;
+    for (const auto& [id, link] : links_) {
+      flush(*link, now_ns);
       watch(link);
-      reap(*link);
+      if (is_over(*link, now_ns)) over.push_back(link);
     }
-    set_alarm();
+    for (const auto& link : over) reap(*link, now_ns);
+    set_alarm(now_ns);
     if (hub_.has_inbound() || links_.empty()) changed_.notify_all();
     if (polling_ && (hub_.has_inbound() || link_changes_ != link_changes_seen_)) wake_.set();
     link_changes_seen_ = link_changes_;
-  }
-
-  std::vector<std::shared_ptr<Link>> all_links() const {
-    std::vector<std::shared_ptr<Link>> all;
-    for (const auto& [id, link] : links_) all.push_back(link);
-    return all;
   }
 
   void wait_for_all() {
     for (const auto& [id, link] : links_) watch(link);
   }
 
-  void set_alarm() {
-    const std::int64_t next = hub_.next_tick(monotonic_ns());
+  void set_alarm(std::int64_t now_ns) {
+    const std::int64_t next = hub_.next_tick(now_ns);
     if (alarm_set_ && alarm_ns_ <= next) return;
     alarm_set_ = true;
     alarm_ns_ = next;
@@ -535,15 +532,16 @@ class TcpEndpoint : public Endpoint {
     link.buffers.front().iov_len -= count;
   }
 
-  // Closes a link that is broken or has said all.
-  void reap(Link& link) {
-    const bool over =
-        link.broken || (hub_.finished(link.id) && link.buffers.empty()) || hub_.overdue(link.id, monotonic_ns());
-    if (!over) return;
+  // Broken, or it has said all.
+  bool is_over(const Link& link, std::int64_t now_ns) const {
+    return link.broken || (hub_.finished(link.id) && link.buffers.empty()) || hub_.overdue(link.id, now_ns);
+  }
+
+  void reap(Link& link, std::int64_t now_ns) {
     if (!link.broken) link.broken = asio::error::eof;
     link.stop_watching();
     link.close();
-    hub_.closed(link.id, network_error(link.broken, to_text(address_)), monotonic_ns());
+    hub_.closed(link.id, network_error(link.broken, to_text(address_)), now_ns);
     links_.erase(link.id);
     ++link_changes_;
   }

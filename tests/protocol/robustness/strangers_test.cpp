@@ -45,7 +45,9 @@ struct Game {
   void listen(std::int64_t wait_ns) {
     static_cast<void>(tracker->receive(0));
     for (const Inbound& inbound : renderer->receive(wait_ns)) {
-      left += std::holds_alternative<PeerLeft>(inbound) ? 1 : 0;
+      // A machine that is busy with other things may stop these threads for longer than a peer may be silent.
+      const auto* lost = std::get_if<PeerLeft>(&inbound);
+      EXPECT_TRUE(lost == nullptr || lost->reason.code == ErrorCode::timeout) << lost->reason.message;
       const auto* received = std::get_if<Received>(&inbound);
       const auto* command = received == nullptr ? nullptr : std::get_if<Command>(&received->message);
       if (command == nullptr) continue;
@@ -56,12 +58,10 @@ struct Game {
   void listen_until_all_came() {
     for (int i = 0; i < 300 && heard < sent; ++i) listen(kSecond / 10);
     EXPECT_EQ(heard, sent);
-    EXPECT_EQ(left, 0) << "the renderer lost its link";
   }
 
   std::unique_ptr<Endpoint> tracker, renderer;
   std::uint64_t sent = 0, heard = 0;
-  int left = 0;
 };
 
 VideoFrame a_picture() {
