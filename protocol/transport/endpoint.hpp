@@ -81,7 +81,7 @@ struct LinkOptions {
   PixelCodec video_codec = PixelCodec::raw_bgr8;  // raw frames are turned into this before they are sent
   bool want_video = true;
   std::int64_t heartbeat_ns = 500'000'000;
-  std::int64_t dead_after_ns = 1'450'000'000;
+  std::int64_t dead_after_ns = 1'500'000'000;
   std::string record_file;  // every message and the exact bytes, as MCAP; empty: no capture
 };
 
