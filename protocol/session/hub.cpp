@@ -10,10 +10,10 @@ namespace counterpart {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr std::int64_t kHandshakeLimit = 3 * kSecond;  // of a server, for whoever comes
-constexpr std::int64_t kDialLimit = 3 * kSecond;       // of a client: for the connection
-constexpr std::int64_t kAnswerLimit = kSecond;         // and for the answer to HELLO
-constexpr std::int64_t kQuickLimit = 2 * kSecond / 5;  // of a client that knows how near the peer is: for either
+constexpr std::int64_t kHandshakeLimit = 3 * kSecond;   // of a server, for whoever comes
+constexpr std::int64_t kDialLimit = 3 * kSecond;        // of a client: for the connection
+constexpr std::int64_t kAnswerLimit = 4 * kSecond / 5;  // and for the answer to HELLO
+constexpr std::int64_t kQuickLimit = 2 * kSecond / 5;   // of a client that knows how near the peer is: for either
 constexpr std::int64_t kMessageLimit = 10 * kSecond;
 constexpr std::int64_t kClosingLimit = kSecond;
 constexpr std::int64_t kSessionLimit = 60 * kSecond;
