@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::uint64_t kMostChunk = 256U << 20;  // ours are about 1 MiB, or one picture
 
-
 // Takes fields off the front of a record; after the first that does not fit, `good` stays false.
 class Cursor {
  public:

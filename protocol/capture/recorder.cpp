@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "protocol/capture/mcap_writer.hpp"
-#include "protocol/capture/wire_record.hpp"
-#include "protocol/codec/codec.hpp"
+#include "protocol/capture/wire_writer.hpp"
 #include "protocol/codec/names.hpp"
 
 namespace counterpart {
@@ -42,19 +41,6 @@ struct Recorder::State {
     if (!error) error = why;
   }
 
-  void write(const Seen& seen) {
-    const auto wire = read_wire_record(seen.record);
-    if (!wire) return;
-    const auto log_ns = static_cast<std::uint64_t>(seen.now_ns);
-    const auto publish_ns = static_cast<std::uint64_t>(wire->header.time_ns);
-    writer->add(writer->channel("/wire", "counterpart-wire"), log_ns, publish_ns, seen.record);
-    const auto type = static_cast<MessageType>(wire->header.type);
-    if (is_known(wire->header.type) && type != MessageType::video) {
-      const std::string topic = (wire->incoming ? "/in/" : "/out/") + std::string(name_of(type));
-      writer->add(writer->channel(topic, is_json(type) ? "json" : "counterpart"), log_ns, publish_ns, wire->body);
-    }
-  }
-
   // Takes everything that waits, as chunks; true: the end was asked for.
   bool write_pending() {
     std::vector<Seen> batch;
@@ -67,7 +53,7 @@ struct Recorder::State {
       end = ending;
     }
     for (const Seen& seen : batch) {
-      write(seen);
+      add_wire_record(*writer, seen.record, seen.now_ns);
       if (writer->chunk_bytes() >= kChunkBytes) flush();
     }
     flush();
@@ -92,12 +78,11 @@ Recorder::Recorder(std::unique_ptr<State> state) : state_(std::move(state)) {
 Result<std::unique_ptr<Recorder>> Recorder::open(const std::string& path, Role role, const std::string& software) {
   auto writer = McapWriter::create(path);
   if (!writer) return tl::make_unexpected(writer.error());
-  const auto utc = std::chrono::duration_cast<std::chrono::nanoseconds>(
-                       std::chrono::system_clock::now().time_since_epoch())
-                       .count();
-  auto noted = (*writer)->write_metadata("session", {{"role", std::string(name_of(role))},
-                                                     {"software", software},
-                                                     {"started_utc_ns", std::to_string(utc)}});
+  const auto utc =
+      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch()).count();
+  auto noted = (*writer)->write_metadata(
+      "session",
+      {{"role", std::string(name_of(role))}, {"software", software}, {"started_utc_ns", std::to_string(utc)}});
   if (!noted) return tl::make_unexpected(noted.error());
   auto state = std::make_unique<State>();
   state->writer = std::move(*writer);
@@ -122,7 +107,8 @@ void Recorder::saw(bool incoming, bool video_lane, PeerId peer, const HeaderByte
     if (state_->pending_bytes > kMostPendingBytes) {
       ++state_->lost;
       if (!state_->error) {
-        state_->error = Error{ErrorCode::limit_exceeded, "the disk is too slow for the capture: messages are missing in it"};
+        state_->error =
+            Error{ErrorCode::limit_exceeded, "the disk is too slow for the capture: messages are missing in it"};
       }
       return;
     }

@@ -47,6 +47,24 @@ std::optional<RecordedMessage> SessionReader::next() {
   return std::nullopt;
 }
 
+bool is_about_the_game(MessageType type) {
+  switch (type) {
+    case MessageType::hello:
+    case MessageType::welcome:
+    case MessageType::challenge:
+    case MessageType::proof:
+    case MessageType::heartbeat:
+    case MessageType::error:
+    case MessageType::bye:
+    case MessageType::clock_request:
+    case MessageType::clock_response:
+    case MessageType::acknowledge:
+      return false;
+    default:
+      return true;
+  }
+}
+
 // A server answers HELLO at once, so the WELCOME that follows names the peer that said it.
 void SessionReader::learn_roles(const RecordedMessage& recorded) {
   if (const auto* hello = std::get_if<Hello>(&recorded.message)) last_hello_role_ = hello->role;
@@ -65,21 +83,7 @@ bool SessionReader::sent_by(Role role, const RecordedMessage& recorded) {
   const auto peer_role = peer_roles_.find(recorded.peer);
   const Role wanted = recorded.incoming ? role : counterpart_of(role);
   if (peer_role != peer_roles_.end() && peer_role->second != wanted) return false;
-  switch (type_of(recorded.message)) {
-    case MessageType::hello:
-    case MessageType::welcome:
-    case MessageType::challenge:
-    case MessageType::proof:
-    case MessageType::heartbeat:
-    case MessageType::error:
-    case MessageType::bye:
-    case MessageType::clock_request:
-    case MessageType::clock_response:
-    case MessageType::acknowledge:
-      return false;
-    default:
-      break;
-  }
+  if (!is_about_the_game(type_of(recorded.message))) return false;
   if (recorded.seq == 0) return true;
   std::uint64_t& last = last_seq_[{recorded.peer, recorded.video_lane}];
   if (recorded.seq <= last) return false;

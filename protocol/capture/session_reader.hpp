@@ -20,6 +20,9 @@ struct RecordedMessage {
   Message message;
 };
 
+// False for the link's own messages: handshakes, heartbeats, clocks, acknowledgements.
+bool is_about_the_game(MessageType type);
+
 class SessionReader {
  public:
   [[nodiscard]] static Result<std::unique_ptr<SessionReader>> open(const std::string& path);
@@ -31,7 +34,6 @@ class SessionReader {
   // and nothing twice that was sent twice because a link was lost.
   bool sent_by(Role role, const RecordedMessage& recorded);
 
-  Role recorder_role() const { return role_; }
   std::uint64_t passed_over() const { return passed_over_; }
   const std::optional<Error>& problem() const { return reader_->problem(); }
   const McapReader& file() const { return *reader_; }

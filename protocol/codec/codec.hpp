@@ -19,6 +19,9 @@ bool is_known(std::uint16_t type);
 // Bodies longer than this version's are read as far as they are known.
 [[nodiscard]] Result<Message> decode(MessageType type, ByteView body);
 
+// The same; a picture keeps the memory that it came in.
+[[nodiscard]] Result<Message> decode(MessageType type, Bytes&& body);
+
 // The frame that a message was made from; 0 if it was not made from one.
 FrameId frame_of(const Message& message);
 

@@ -10,8 +10,10 @@ namespace counterpart {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr std::int64_t kHandshakeLimit = 3 * kSecond;  // of a server, for whoever comes
-constexpr std::int64_t kAnswerLimit = kSecond;         // of a client, which can try again
+constexpr std::int64_t kHandshakeLimit = 3 * kSecond;   // of a server, for whoever comes
+constexpr std::int64_t kDialLimit = 3 * kSecond;        // of a client: for the connection
+constexpr std::int64_t kAnswerLimit = 4 * kSecond / 5;  // and for the answer to HELLO
+constexpr std::int64_t kQuickLimit = 2 * kSecond / 5;   // of a client that knows how near the peer is: for either
 constexpr std::int64_t kMessageLimit = 10 * kSecond;
 constexpr std::int64_t kClosingLimit = kSecond;
 constexpr std::int64_t kSessionLimit = 60 * kSecond;
@@ -59,13 +61,13 @@ WireMessage Hub::refusal(std::int64_t now_ns) const {
 std::optional<Hub::LaneName> Hub::wants_to_dial(std::int64_t now_ns) {
   if (end_ != End::client) return std::nullopt;
   if (!main_dial_.busy && main_dial_.next_ns <= now_ns) {
-    main_dial_.busy = true;
+    begin_dial(main_dial_, now_ns);
     return LaneName::main;
   }
   const auto peer = peers_.find(server_peer_);
   const bool open = peer != peers_.end() && peer->second.main_connection != 0;
   if (open && options_.want_video && !video_dial_.busy && video_dial_.next_ns <= now_ns) {
-    video_dial_.busy = true;
+    begin_dial(video_dial_, now_ns);
     return LaneName::video;
   }
   return std::nullopt;
@@ -84,10 +86,32 @@ void Hub::dial_failed(LaneName lane, const Error& why, std::int64_t now_ns) {
   if (lane == LaneName::main) note_refusal(why);
 }
 
+void Hub::begin_dial(Dial& dial, std::int64_t now_ns) {
+  dial.busy = true;
+  dial.began_ns = now_ns;
+}
+
+// Waits count from the beginning of the last attempt: what an attempt takes is not waited for a second time.
 void Hub::try_again_later(Dial& dial, std::int64_t now_ns) {
   dial.busy = false;
   dial.wait_ns = std::clamp(dial.wait_ns * 8 / 5, kFirstWait, kLongestWait);
-  dial.next_ns = now_ns + dial.wait_ns;
+  dial.next_ns = std::max(now_ns, dial.began_ns + dial.wait_ns);
+}
+
+// A peer that was there a moment ago is as near as it was: an attempt that takes much longer fell into the gap, and the
+// next one is quicker than TCP's own second try.
+std::optional<std::int64_t> Hub::quick_limit(std::int64_t now_ns) const {
+  const auto found = peers_.find(server_peer_);
+  if (found == peers_.end()) return std::nullopt;
+  const Peer& peer = found->second;
+  const std::int64_t round_trip_ns = peer.clock.at(now_ns).round_trip_ns;
+  const bool long_gone = peer.main_connection == 0 && now_ns - peer.away_since_ns > kSessionLimit;
+  if (round_trip_ns < 0 || long_gone) return std::nullopt;
+  return kQuickLimit + 4 * round_trip_ns;
+}
+
+std::int64_t Hub::dial_limit(std::int64_t now_ns) const {
+  return std::min(kDialLimit, quick_limit(now_ns).value_or(kDialLimit));
 }
 
 void Hub::note_refusal(const Error& why) {
@@ -204,7 +228,10 @@ std::optional<WireMessage> Hub::next_to_write(ConnectionId id, std::int64_t now_
     connection.urgent.pop_front();
   } else if (connection.stage == Stage::open && peer != nullptr) {
     Lane& lane = lane_of(*peer, connection.lane);
-    if (std::exchange(connection.acknowledge, false)) {
+    const std::int64_t by_ns = connection.acknowledge_by_ns;
+    if (by_ns >= 0 && (now_ns >= by_ns || lane.has_waiting())) {
+      connection.acknowledge_by_ns = -1;
+      connection.unacknowledged_bytes = 0;
       say(connection, Acknowledge{lane.last_received()});
       return next_to_write(id, now_ns);
     }
@@ -250,14 +277,15 @@ void Hub::tick(std::int64_t now_ns) {
   forget_the_long_gone(now_ns);
 }
 
-std::int64_t Hub::handshake_limit() const {
-  return end_ == End::server ? kHandshakeLimit : kAnswerLimit;
+std::int64_t Hub::handshake_limit(std::int64_t now_ns) const {
+  if (end_ == End::server) return kHandshakeLimit;
+  return std::min(kHandshakeLimit, quick_limit(now_ns).value_or(kAnswerLimit));
 }
 
 void Hub::tick(ConnectionId id, Connection& connection, std::int64_t now_ns) {
   if (connection.stage == Stage::closing) return;
   if (connection.stage != Stage::open) {
-    if (now_ns - connection.opened_ns < handshake_limit()) return;
+    if (now_ns - connection.opened_ns < handshake_limit(now_ns)) return;
     return fail(id, connection, {ErrorCode::timeout, "the peer did not open the session in time"}, now_ns);
   }
   if (inbound_full()) connection.last_read_ns = now_ns;  // it is we who do not listen
@@ -303,11 +331,12 @@ std::int64_t Hub::next_tick(std::int64_t now_ns) const {
     if (connection.stage == Stage::closing) {
       sooner(connection.closing_since_ns + kClosingLimit + 1);
     } else if (connection.stage != Stage::open) {
-      sooner(connection.opened_ns + handshake_limit());
+      sooner(connection.opened_ns + handshake_limit(now_ns));
     } else {
       sooner(connection.next_heartbeat_ns);
       sooner(connection.last_read_ns + options_.dead_after_ns);
       if (connection.lane == LaneName::main) sooner(connection.next_clock_ns);
+      if (connection.acknowledge_by_ns >= 0) sooner(connection.acknowledge_by_ns);
       if (connection.message_began_ns >= 0) sooner(connection.message_began_ns + kMessageLimit);
     }
   }
@@ -354,8 +383,7 @@ void Hub::report(PeerId peer, const Error& error, std::int64_t now_ns) {
 }
 
 std::vector<Inbound> Hub::take_inbound() {
-  std::vector<Inbound> taken(std::make_move_iterator(inbound_.begin()), std::make_move_iterator(inbound_.end()));
-  inbound_.clear();
+  std::vector<Inbound> taken = std::exchange(inbound_, {});
   inbound_bytes_ = 0;
   for (auto& [id, peer] : peers_) peer.pictures_waiting = 0;
   return taken;

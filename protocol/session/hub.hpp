@@ -50,6 +50,7 @@ class Hub {
   enum class LaneName { main, video };
   std::optional<LaneName> wants_to_dial(std::int64_t now_ns);
   ConnectionId dialled(LaneName lane, std::int64_t now_ns);
+  std::int64_t dial_limit(std::int64_t now_ns) const;  // how long connecting may take
   void dial_failed(LaneName lane, const Error& why, std::int64_t now_ns);
 
   // Where bytes of the connection go, and that `count` of them came.
@@ -121,11 +122,13 @@ class Hub {
     std::int64_t next_clock_ns = 0;
     int clock_requests = 0;
     std::int64_t closing_since_ns = 0;
-    bool acknowledge = false;
+    std::int64_t acknowledge_by_ns = -1;  // -1: everything is acknowledged
+    std::size_t unacknowledged_bytes = 0;
   };
 
   struct Dial {
     bool busy = false;  // being connected, or connected
+    std::int64_t began_ns = 0;
     std::int64_t next_ns = 0;
     std::int64_t wait_ns = 0;
   };
@@ -142,7 +145,9 @@ class Hub {
   void end_session(Peer& peer, const Error& why, std::int64_t now_ns);
   void push(Peer& peer, const Outgoing& message, std::int64_t now_ns);
   void tick(ConnectionId id, Connection& connection, std::int64_t now_ns);
-  std::int64_t handshake_limit() const;
+  void begin_dial(Dial& dial, std::int64_t now_ns);
+  std::optional<std::int64_t> quick_limit(std::int64_t now_ns) const;
+  std::int64_t handshake_limit(std::int64_t now_ns) const;
   void forget_the_long_gone(std::int64_t now_ns);
   void try_again_later(Dial& dial, std::int64_t now_ns);
   void note_refusal(const Error& why);
@@ -165,11 +170,11 @@ class Hub {
   void attach(ConnectionId id, Connection& connection, Peer& peer, bool resumed, std::int64_t now_ns);
 
   // hub_receive.cpp
-  [[nodiscard]] Result<void> on_message(ConnectionId id, Connection& connection, const RawMessage& raw,
-                                        std::int64_t now_ns);
+  [[nodiscard]] Result<void> on_message(ConnectionId id, Connection& connection, RawMessage& raw, std::int64_t now_ns);
+  void acknowledge_soon(Connection& connection, std::size_t bytes, std::int64_t now_ns);
   [[nodiscard]] Result<void> on_open_message(ConnectionId id, Connection& connection, const Header& header,
-                                             Message message, std::int64_t now_ns);
-  void deliver(Peer& peer, Message message, std::int64_t now_ns);
+                                             Message&& message, std::int64_t now_ns);
+  void deliver(Peer& peer, Message&& message, std::int64_t now_ns);
 
   End end_;
   LinkOptions options_;
@@ -178,7 +183,7 @@ class Hub {
   std::map<ConnectionId, Connection> connections_;
   std::map<PeerId, Peer> peers_;
   std::map<std::uint64_t, PeerId> sessions_;
-  std::deque<Inbound> inbound_;
+  std::vector<Inbound> inbound_;
   std::size_t inbound_bytes_ = 0;
   ConnectionId last_connection_ = 0;
   PeerId last_peer_ = 0;

@@ -10,6 +10,10 @@ namespace {
 // A program that does not read for a while finds the newest pictures, not all of them.
 constexpr int kMostPictures = 8;
 
+// An acknowledgement of its own would wake the peer for nothing if an answer goes out a moment later.
+constexpr std::int64_t kAcknowledgeWithin = 5'000'000;
+constexpr std::size_t kMostUnacknowledgedBytes = 128U << 10;
+
 std::size_t weight(const Message& message) {
   const auto* video = std::get_if<VideoFrame>(&message);
   return 512 + (video != nullptr ? video->bytes.size() : 0);
@@ -32,6 +36,7 @@ void Hub::read(ConnectionId id, std::size_t count, std::int64_t now_ns) {
       if (connection.stage != Stage::closing) fail(id, connection, done.error(), now_ns);
       return;
     }
+    connection.parser.reuse(std::move((*raw)->body));
   }
   if (!connection.parser.inside_message()) {
     connection.message_began_ns = -1;
@@ -40,7 +45,13 @@ void Hub::read(ConnectionId id, std::size_t count, std::int64_t now_ns) {
   }
 }
 
-Result<void> Hub::on_message(ConnectionId id, Connection& connection, const RawMessage& raw, std::int64_t now_ns) {
+void Hub::acknowledge_soon(Connection& connection, std::size_t bytes, std::int64_t now_ns) {
+  connection.unacknowledged_bytes += bytes;
+  if (connection.acknowledge_by_ns < 0) connection.acknowledge_by_ns = now_ns + kAcknowledgeWithin;
+  if (connection.unacknowledged_bytes >= kMostUnacknowledgedBytes) connection.acknowledge_by_ns = now_ns;
+}
+
+Result<void> Hub::on_message(ConnectionId id, Connection& connection, RawMessage& raw, std::int64_t now_ns) {
   if (tap_ != nullptr) {
     tap_->saw(true, connection.lane == LaneName::video, connection.peer, raw.header_bytes, raw.body, now_ns);
   }
@@ -52,7 +63,7 @@ Result<void> Hub::on_message(ConnectionId id, Connection& connection, const RawM
   const bool open = connection.stage == Stage::open && peer != nullptr;
   if (open && (raw.header.flags & kFlagKept) != 0) {
     const auto arrival = lane_of(*peer, connection.lane).arrived(raw.header.seq);
-    connection.acknowledge = true;
+    acknowledge_soon(connection, kHeaderSize + raw.body.size(), now_ns);
     if (arrival == Lane::Arrival::duplicate) return {};
     if (arrival == Lane::Arrival::gap) {
       return failure(ErrorCode::bad_format,
@@ -63,7 +74,8 @@ Result<void> Hub::on_message(ConnectionId id, Connection& connection, const RawM
     if (peer != nullptr) ++peer->counts.skipped;
     return {};
   }
-  auto message = decode(static_cast<MessageType>(raw.header.type), raw.body);
+  const auto type = static_cast<MessageType>(raw.header.type);
+  auto message = open ? decode(type, std::move(raw.body)) : decode(type, raw.body);
   if (!message) {
     if (open) end_session(*peer, message.error(), now_ns);
     return tl::make_unexpected(message.error());
@@ -72,7 +84,7 @@ Result<void> Hub::on_message(ConnectionId id, Connection& connection, const RawM
   return on_open_message(id, connection, raw.header, std::move(*message), now_ns);
 }
 
-Result<void> Hub::on_open_message(ConnectionId id, Connection& connection, const Header& header, Message message,
+Result<void> Hub::on_open_message(ConnectionId id, Connection& connection, const Header& header, Message&& message,
                                   std::int64_t now_ns) {
   Peer& peer = *peer_of(connection);
   switch (static_cast<MessageType>(header.type)) {
@@ -117,7 +129,7 @@ Result<void> Hub::on_open_message(ConnectionId id, Connection& connection, const
   }
 }
 
-void Hub::deliver(Peer& peer, Message message, std::int64_t now_ns) {
+void Hub::deliver(Peer& peer, Message&& message, std::int64_t now_ns) {
   const bool picture = std::holds_alternative<VideoFrame>(message);
   if (picture && !peer.lockstep && ++peer.pictures_waiting > kMostPictures) {
     const auto oldest = std::find_if(inbound_.begin(), inbound_.end(), [&](const Inbound& inbound) {
@@ -132,7 +144,7 @@ void Hub::deliver(Peer& peer, Message message, std::int64_t now_ns) {
     }
   }
   inbound_bytes_ += weight(message);
-  inbound_.push_back(Received{peer.id, std::move(message), now_ns});
+  inbound_.emplace_back(Received{peer.id, std::move(message), now_ns});
 }
 
 }  // namespace counterpart

@@ -47,10 +47,10 @@ struct PeerStats {
   Role role = Role::observer;
   std::uint64_t sent = 0, received = 0;  // messages
   std::uint64_t bytes_sent = 0, bytes_received = 0;
-  std::uint64_t dropped = 0;  // latest-wins messages replaced before they went out
-  std::uint64_t skipped = 0;  // received messages of unknown type
-  std::uint32_t queued = 0;           // waiting to go out
-  std::uint32_t unacknowledged = 0;   // kept messages that the peer has not confirmed, queued ones included
+  std::uint64_t dropped = 0;         // latest-wins messages replaced before they went out
+  std::uint64_t skipped = 0;         // received messages of unknown type
+  std::uint32_t queued = 0;          // waiting to go out
+  std::uint32_t unacknowledged = 0;  // kept messages that the peer has not confirmed, queued ones included
   std::int64_t clock_offset_ns = 0;  // peer's monotonic clock minus ours
   std::int64_t clock_bound_ns = -1;  // half-width of the interval that surely holds the offset; -1: not known yet
   std::int64_t round_trip_ns = -1;

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "protocol/capture/checkup.hpp"
 #include "protocol/capture/session_reader.hpp"
 #include "protocol/codec/json.hpp"
 #include "protocol/codec/names.hpp"
@@ -15,8 +16,8 @@ namespace {
 
 using nlohmann::json;
 
-struct Arguments {
-  std::string file;
+struct CaptureArguments {
+  std::string file, second;
   std::string type;
   std::uint64_t limit = 0;
   bool json = false;
@@ -39,7 +40,7 @@ Tally count(SessionReader& reader) {
   return tally;
 }
 
-int info(const Arguments& arguments) {
+int capture_info(const CaptureArguments& arguments) {
   auto reader = SessionReader::open(arguments.file);
   if (!reader) return fail(reader.error());
   const Tally tally = count(**reader);
@@ -69,7 +70,7 @@ int info(const Arguments& arguments) {
   return good ? kFine : fail(*(*reader)->problem());
 }
 
-int cat(const Arguments& arguments) {
+int capture_cat(const CaptureArguments& arguments) {
   auto reader = SessionReader::open(arguments.file);
   if (!reader) return fail(reader.error());
   std::uint64_t shown = 0;
@@ -89,17 +90,67 @@ int cat(const Arguments& arguments) {
   return all_read && (*reader)->problem() ? fail(*(*reader)->problem()) : kFine;
 }
 
+int capture_doctor(const CaptureArguments& arguments) {
+  const auto checkup = check_capture(arguments.file);
+  if (!checkup) return fail(checkup.error());
+  if (arguments.json) {
+    std::cout << json{{"messages", checkup->messages}, {"damage", checkup->damage}, {"findings", checkup->findings}}
+              << '\n';
+  } else {
+    std::cout << arguments.file << ": " << checkup->messages << " messages\n";
+    for (const std::string& line : checkup->damage) std::cout << "damage: " << line << '\n';
+    for (const std::string& line : checkup->findings) std::cout << "finding: " << line << '\n';
+    if (checkup->damage.empty() && checkup->findings.empty()) std::cout << "nothing is wrong with it\n";
+    if (!checkup->damage.empty()) {
+      std::cout << "what is whole can be saved: vhp capture recover " << arguments.file << " NEW.mcap\n";
+    }
+  }
+  return checkup->damage.empty() ? kFine : kFailed;
+}
+
+int capture_recover(const CaptureArguments& arguments) {
+  if (arguments.file == arguments.second) {
+    return fail({ErrorCode::invalid_argument, "the recovered capture needs another name"});
+  }
+  const auto recovery = recover_capture(arguments.file, arguments.second);
+  if (!recovery) return fail(recovery.error());
+  if (arguments.json) {
+    std::cout << json{{"messages", recovery->messages},
+                      {"passed_over", recovery->passed_over},
+                      {"problem", recovery->problem}}
+              << '\n';
+  } else {
+    std::cout << recovery->messages << " messages in " << arguments.second << ", read again and found whole";
+    if (recovery->passed_over > 0) std::cout << "; " << recovery->passed_over << " damaged ones left out";
+    std::cout << '\n' << (recovery->problem.empty() ? "the old file was whole, too" : recovery->problem) << '\n';
+  }
+  return kFine;
+}
+
+int capture_diff(const CaptureArguments& arguments) {
+  const auto differences =
+      compare_captures(arguments.file, arguments.second, arguments.limit == 0 ? 20 : arguments.limit);
+  if (!differences) return fail(differences.error());
+  if (arguments.json) {
+    std::cout << json{{"same", differences->empty()}, {"differences", *differences}} << '\n';
+  } else {
+    for (const std::string& line : *differences) std::cout << line << '\n';
+    if (differences->empty()) std::cout << "both say the same\n";
+  }
+  return differences->empty() ? kFine : kFailed;
+}
+
 }  // namespace
 
 void add_capture(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CaptureArguments>();
   CLI::App* command = app.add_subcommand("capture", "Looks into captures");
   command->require_subcommand(1);
 
   CLI::App* info_command = command->add_subcommand("info", "What a capture holds, and whether it is whole");
   info_command->add_option("file", arguments->file, "The capture")->required();
   info_command->add_flag("--json", arguments->json, "As one JSON object");
-  info_command->callback([arguments, &exit_code] { exit_code = info(*arguments); });
+  info_command->callback([arguments, &exit_code] { exit_code = capture_info(*arguments); });
 
   CLI::App* cat_command = command->add_subcommand("cat", "Every message as a JSON line");
   cat_command->add_option("file", arguments->file, "The capture")->required();
@@ -109,7 +160,25 @@ void add_capture(CLI::App& app, int& exit_code) {
       });
   cat_command->add_option("--limit", arguments->limit, "Stop after so many lines (0: never)");
   cat_command->add_flag("--json", arguments->json, "(always)");
-  cat_command->callback([arguments, &exit_code] { exit_code = cat(*arguments); });
+  CLI::App* doctor_command = command->add_subcommand("doctor", "Looks for damage, gaps and unanswered commands");
+  doctor_command->add_option("file", arguments->file, "The capture")->required();
+  doctor_command->add_flag("--json", arguments->json, "As one JSON object");
+  doctor_command->callback([arguments, &exit_code] { exit_code = capture_doctor(*arguments); });
+
+  CLI::App* recover_command = command->add_subcommand("recover", "Saves what is whole in a damaged capture");
+  recover_command->add_option("file", arguments->file, "The damaged capture")->required();
+  recover_command->add_option("new", arguments->second, "The capture to write")->required();
+  recover_command->add_flag("--json", arguments->json, "Result as JSON");
+  recover_command->callback([arguments, &exit_code] { exit_code = capture_recover(*arguments); });
+
+  CLI::App* diff_command = command->add_subcommand("diff", "Whether two captures say the same, stamps apart");
+  diff_command->add_option("a", arguments->file, "A capture")->required();
+  diff_command->add_option("b", arguments->second, "Another one")->required();
+  diff_command->add_option("--limit", arguments->limit, "Differences to show; 0: 20");
+  diff_command->add_flag("--json", arguments->json, "Result as JSON");
+  diff_command->callback([arguments, &exit_code] { exit_code = capture_diff(*arguments); });
+
+  cat_command->callback([arguments, &exit_code] { exit_code = capture_cat(*arguments); });
 }
 
 }  // namespace counterpart::vhp

@@ -1,6 +1,5 @@
 #include "protocol/vhp/common.hpp"
 
-#include <chrono>
 #include <csignal>
 #include <iostream>
 
@@ -20,11 +19,6 @@ void catch_interrupts() {
 
 bool interrupted() {
   return g_interrupted != 0;
-}
-
-std::int64_t monotonic_ns() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
 }
 
 int fail(const Error& error) {

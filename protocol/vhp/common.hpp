@@ -25,8 +25,6 @@ struct LinkArguments {
 void catch_interrupts();
 bool interrupted();
 
-std::int64_t monotonic_ns();
-
 // Writes "vhp: ..." to stderr; returns kFailed, or kWrongUsage for what cannot be meant.
 int fail(const Error& error);
 

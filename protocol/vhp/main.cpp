@@ -14,7 +14,10 @@ int main(int argc, char** argv) {
   add_send(app, exit_code);
   add_record(app, exit_code);
   add_replay(app, exit_code);
+  add_script(app, exit_code);
   add_capture(app, exit_code);
+  add_export(app, exit_code);
+  add_completion(app, exit_code);
   catch_interrupts();
   try {
     app.parse(argc, argv);

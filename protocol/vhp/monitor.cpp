@@ -8,6 +8,7 @@
 
 #include "protocol/codec/json.hpp"
 #include "protocol/codec/names.hpp"
+#include "protocol/transport/monotonic_clock.hpp"
 #include "protocol/vhp/commands.hpp"
 #include "protocol/vhp/common.hpp"
 
@@ -18,7 +19,7 @@ using nlohmann::json;
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
-struct Arguments {
+struct MonitorArguments {
   LinkArguments link{"127.0.0.1:7401", "", 3};
   double seconds = 0;
   double every_s = 1;
@@ -119,7 +120,7 @@ void print_table(const Picture& picture, const json& all, bool live) {
   std::fflush(stdout);
 }
 
-int run(const Arguments& arguments) {
+int run_monitor(const MonitorArguments& arguments) {
   auto endpoint = open_link(arguments.link, Role::observer, arguments.video);
   if (!endpoint) return fail(endpoint.error());
   const bool live = isatty(STDOUT_FILENO) != 0;
@@ -147,7 +148,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void add_monitor(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<MonitorArguments>();
   CLI::App* command = app.add_subcommand("monitor", "Shows rates, delays, drops and the state of the game, live");
   command->add_option("address", arguments->link.address, "HOST:PORT of the tracker (or renderer, or stage)")
       ->capture_default_str();
@@ -159,7 +160,7 @@ void add_monitor(CLI::App& app, int& exit_code) {
   command->add_option("--token-file", arguments->link.token_file, "The shared token, for other hosts");
   command->add_flag("--video", arguments->video, "Fetch the pictures, too, and count them");
   command->add_flag("--json", arguments->json, "One JSON object a line");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  command->callback([arguments, &exit_code] { exit_code = run_monitor(*arguments); });
 }
 
 }  // namespace counterpart::vhp

@@ -3,13 +3,14 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "protocol/transport/monotonic_clock.hpp"
 #include "protocol/vhp/commands.hpp"
 #include "protocol/vhp/common.hpp"
 
 namespace counterpart::vhp {
 namespace {
 
-struct Arguments {
+struct RecordArguments {
   LinkArguments link;
   std::string file;
   double seconds = 0;
@@ -17,7 +18,7 @@ struct Arguments {
   bool json = false;
 };
 
-int run(const Arguments& arguments) {
+int run_record(const RecordArguments& arguments) {
   auto endpoint = open_link(arguments.link, Role::observer, !arguments.no_video, arguments.file);
   if (!endpoint) return fail(endpoint.error());
   std::cerr << "recording " << (*endpoint)->address() << " into " << arguments.file << "; Ctrl-C ends it\n";
@@ -49,7 +50,7 @@ int run(const Arguments& arguments) {
 }  // namespace
 
 void add_record(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RecordArguments>();
   CLI::App* command = app.add_subcommand("record", "Captures everything that a tracker (or renderer, or stage) sends");
   command->add_option("address", arguments->link.address, "HOST:PORT")->required();
   command->add_option("file", arguments->file, "The capture to write, for example game.mcap")->required();
@@ -58,7 +59,7 @@ void add_record(CLI::App& app, int& exit_code) {
   command->add_option("--token-file", arguments->link.token_file, "The shared token, for other hosts");
   command->add_flag("--no-video", arguments->no_video, "Without the pictures");
   command->add_flag("--json", arguments->json, "Result as JSON");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  command->callback([arguments, &exit_code] { exit_code = run_record(*arguments); });
 }
 
 }  // namespace counterpart::vhp

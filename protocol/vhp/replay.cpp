@@ -7,62 +7,105 @@
 
 #include "protocol/capture/session_reader.hpp"
 #include "protocol/codec/names.hpp"
+#include "protocol/transport/monotonic_clock.hpp"
 #include "protocol/vhp/commands.hpp"
 #include "protocol/vhp/common.hpp"
 
 namespace counterpart::vhp {
 namespace {
 
-struct Arguments {
+struct ReplayArguments {
   std::string file;
   std::string role;
   std::string listen, connect;
   std::string token_file;
   double speed = 1;
+  bool lockstep = false;
   double patience_s = 60;
 };
 
-Result<std::unique_ptr<Endpoint>> open_end(const Arguments& arguments, Role role) {
+Result<std::unique_ptr<Endpoint>> open_end(const ReplayArguments& arguments, Role role) {
   LinkOptions options;
   options.role = role;
   options.software = "vhp " COUNTERPART_VERSION " replay";
   options.token_file = arguments.token_file;
+  options.lockstep = arguments.lockstep;
   if (!arguments.listen.empty()) return listen_tcp(arguments.listen, options);
   return connect_tcp(arguments.connect, options, static_cast<std::int64_t>(arguments.patience_s * 1e9));
 }
 
-bool wait_for_peer(Endpoint& endpoint, double patience_s) {
-  const std::int64_t until = monotonic_ns() + static_cast<std::int64_t>(patience_s * 1e9);
-  while (!interrupted() && monotonic_ns() < until) {
-    for (const Inbound& inbound : endpoint.receive(50'000'000)) {
-      if (std::holds_alternative<PeerJoined>(inbound)) return true;
-    }
-  }
-  return false;
+// What paces a lockstep: the frames that the other side has done (for a tracker, a camera) or has sent (for a
+// renderer).
+std::optional<FrameId> pace_of(const Message& message, Role role) {
+  const auto* done = std::get_if<FrameDone>(&message);
+  const auto* pose = std::get_if<PoseEstimate>(&message);
+  if (role == Role::renderer) return pose == nullptr ? std::nullopt : std::optional(pose->stamp.frame_id);
+  return done == nullptr ? std::nullopt : std::optional(done->stamp.frame_id);
 }
 
+// The live peer.
+class LivePeer {
+ public:
+  LivePeer(Endpoint& endpoint, Role role) : endpoint_(endpoint), role_(role) {}
+
+  void listen(std::int64_t timeout_ns) {
+    for (const Inbound& inbound : endpoint_.receive(timeout_ns)) {
+      joined_ |= std::holds_alternative<PeerJoined>(inbound);
+      const auto* received = std::get_if<Received>(&inbound);
+      const auto frame = received == nullptr ? std::nullopt : pace_of(received->message, role_);
+      if (frame) at_ = std::max(at_.value_or(0), *frame);
+    }
+  }
+
+  template <class Condition>
+  bool wait(double seconds, Condition condition) {
+    const std::int64_t until = monotonic_ns() + static_cast<std::int64_t>(seconds * 1e9);
+    while (!condition()) {
+      if (interrupted() || monotonic_ns() >= until) return false;
+      listen(20'000'000);
+    }
+    return true;
+  }
+
+  bool joined() const { return joined_; }
+  bool has_reached(std::optional<FrameId> frame) const { return !frame || (at_ && *at_ >= *frame); }
+
+ private:
+  Endpoint& endpoint_;
+  Role role_;
+  bool joined_ = false;
+  std::optional<FrameId> at_;
+};
+
 // Reads away what the live peer answers, so that it never has to wait for us.
-void wait_until(Endpoint& endpoint, std::int64_t when_ns) {
+void wait_until(LivePeer& peer, std::int64_t when_ns) {
   do {
-    const std::int64_t left = when_ns - monotonic_ns();
-    static_cast<void>(endpoint.receive(std::clamp<std::int64_t>(left, 0, 20'000'000)));
+    peer.listen(std::clamp<std::int64_t>(when_ns - monotonic_ns(), 0, 20'000'000));
   } while (!interrupted() && monotonic_ns() < when_ns);
 }
 
-int play(const Arguments& arguments, SessionReader& reader, Endpoint& endpoint, Role role) {
+int play(const ReplayArguments& arguments, SessionReader& reader, Endpoint& endpoint, LivePeer& peer, Role role) {
+  std::optional<FrameId> gate;  // how far the other side was when this was said
   std::uint64_t sent = 0;
   std::int64_t capture_start = 0, start = 0;
   while (!interrupted()) {
     auto recorded = reader.next();
     if (!recorded) break;
-    if (!reader.sent_by(role, *recorded)) continue;
+    if (!reader.sent_by(role, *recorded)) {
+      if (const auto frame = pace_of(recorded->message, role)) gate = std::max(gate.value_or(0), *frame);
+      continue;
+    }
     if (sent == 0) {
       capture_start = recorded->log_ns;
       start = monotonic_ns();
     }
-    if (arguments.speed > 0) {
+    if (arguments.lockstep) {
+      if (!peer.wait(arguments.patience_s, [&] { return peer.has_reached(gate); })) {
+        return fail({ErrorCode::timeout, "the peer did not come to frame " + std::to_string(gate.value_or(0))});
+      }
+    } else if (arguments.speed > 0) {
       const auto after = static_cast<double>(recorded->log_ns - capture_start) / arguments.speed;
-      wait_until(endpoint, start + static_cast<std::int64_t>(after));
+      wait_until(peer, start + static_cast<std::int64_t>(after));
     }
     endpoint.broadcast(recorded->message);
     ++sent;
@@ -71,28 +114,29 @@ int play(const Arguments& arguments, SessionReader& reader, Endpoint& endpoint, 
   if (sent == 0) {
     return fail({ErrorCode::not_found, arguments.file + " holds nothing that a " + arguments.role + " sent"});
   }
-  wait_until(endpoint, monotonic_ns() + 500'000'000);
+  wait_until(peer, monotonic_ns() + 500'000'000);
   std::cout << sent << " messages replayed as " << arguments.role << '\n';
   return interrupted() ? kFailed : kFine;
 }
 
-int run(const Arguments& arguments) {
+int run_replay(const ReplayArguments& arguments) {
   const auto role = from_name<Role>(arguments.role);
   auto reader = SessionReader::open(arguments.file);
   if (!reader) return fail(reader.error());
   auto endpoint = open_end(arguments, *role);
   if (!endpoint) return fail(endpoint.error());
   if (!arguments.listen.empty()) std::cerr << "waiting for a peer on " << (*endpoint)->address() << '\n';
-  if (!wait_for_peer(**endpoint, arguments.patience_s)) {
+  LivePeer peer(**endpoint, *role);
+  if (!peer.wait(arguments.patience_s, [&] { return peer.joined(); })) {
     return fail({ErrorCode::timeout, "no peer came within " + std::to_string(arguments.patience_s) + " s"});
   }
-  return play(arguments, **reader, **endpoint, *role);
+  return play(arguments, **reader, **endpoint, peer, *role);
 }
 
 }  // namespace
 
 void add_replay(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReplayArguments>();
   CLI::App* command = app.add_subcommand("replay", "Plays one side of a capture to a live peer");
   command->add_option("file", arguments->file, "The capture")->required()->check(CLI::ExistingFile);
   command->add_option("--as", arguments->role, "Whose messages: tracker, renderer or camera")
@@ -104,6 +148,7 @@ void add_replay(CLI::App& app, int& exit_code) {
   command->add_option("--speed", arguments->speed, "1: as recorded; 0: as fast as it goes")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  command->add_flag("--lockstep", arguments->lockstep, "By the frames of the live peer instead of by time");
   command->add_option("--patience", arguments->patience_s, "Seconds to wait for the peer")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -112,7 +157,7 @@ void add_replay(CLI::App& app, int& exit_code) {
     if (arguments->listen.empty() == arguments->connect.empty()) {
       throw CLI::ValidationError("replay", "give --listen HOST:PORT or --connect HOST:PORT");
     }
-    exit_code = run(*arguments);
+    exit_code = run_replay(*arguments);
   });
 }
 

@@ -1,82 +1,26 @@
-#include <chrono>
 #include <iostream>
-#include <sstream>
 
 #include <CLI/CLI.hpp>
 
 #include "protocol/codec/json.hpp"
 #include "protocol/codec/names.hpp"
+#include "protocol/transport/monotonic_clock.hpp"
 #include "protocol/vhp/commands.hpp"
 #include "protocol/vhp/common.hpp"
+#include "protocol/vhp/request.hpp"
 
 namespace counterpart::vhp {
 namespace {
 
-struct Arguments {
+struct SendArguments {
   LinkArguments link;
-  Command command;
-  Control control;
-  bool is_control = false;
-  BoardGeometry board;
+  std::shared_ptr<Request> request = std::make_shared<Request>();
   double timeout_s = 60;
   bool no_wait = false;
   bool json = false;
-  // As written, before they are read into `command`.
-  std::vector<std::string> path;
-  std::string hand = "any", part = "whole", target, what, kind, raw;
-  std::vector<std::string> control_values;
-  Grasp grasp;
-  Keyframe keyframe;
-  Navigate navigate;
-  Gaze gaze;
-  Say say;
-  Express express;
-  Stop stop;
 };
 
-// "X,Y", "X,Y,Z" in metres, or the number of a square.
-Result<Point3> read_point(const std::string& text, const BoardGeometry& board) {
-  Point3 point{};
-  std::istringstream in(text);
-  std::string part;
-  std::size_t count = 0;
-  while (std::getline(in, part, ',')) {
-    std::size_t used = 0;
-    try {
-      const double value = std::stod(part, &used);
-      if (count < 3) point[count] = value;
-    } catch (const std::exception&) {
-      used = 0;
-    }
-    if (used == 0 || used != part.size()) count = 9;
-    ++count;
-  }
-  if (count == 2 || count == 3) return point;
-  if (count == 1 && text.find_first_not_of("0123456789") == std::string::npos) {
-    const int square = std::stoi(text.substr(0, 4));
-    if (is_square(square, board.squares)) return centre_of_square_B(square, board);
-  }
-  return failure(ErrorCode::invalid_argument,
-                 "\"" + text + "\" is not a place: write X,Y or X,Y,Z in metres on the board, or a square's number");
-}
-
-Result<std::vector<Point3>> read_path(const Arguments& arguments) {
-  std::vector<Point3> path;
-  for (const std::string& text : arguments.path) {
-    auto point = read_point(text, arguments.board);
-    if (!point) return tl::make_unexpected(point.error());
-    path.push_back(*point);
-  }
-  return path;
-}
-
-std::uint64_t new_id() {
-  return static_cast<std::uint64_t>(
-      std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
-          .count());
-}
-
-void print(const Arguments& arguments, const Feedback& feedback) {
+void print_feedback(const SendArguments& arguments, const Feedback& feedback) {
   if (arguments.json) {
     std::cout << to_json_text(feedback) << std::endl;
     return;
@@ -88,7 +32,7 @@ void print(const Arguments& arguments, const Feedback& feedback) {
   std::cout << std::endl;
 }
 
-int wait_for_answer(const Arguments& arguments, Endpoint& endpoint) {
+int wait_for_answer(const SendArguments& arguments, Endpoint& endpoint) {
   const std::int64_t until = monotonic_ns() + static_cast<std::int64_t>(arguments.timeout_s * 1e9);
   while (!interrupted() && monotonic_ns() < until) {
     for (const Inbound& inbound : endpoint.receive(50'000'000)) {
@@ -99,12 +43,12 @@ int wait_for_answer(const Arguments& arguments, Endpoint& endpoint) {
         return fail({static_cast<ErrorCode>(report->code), report->message});
       }
       const auto* feedback = std::get_if<Feedback>(&received->message);
-      if (feedback == nullptr || feedback->command_id != arguments.command.id) continue;
-      print(arguments, *feedback);
+      if (feedback == nullptr || feedback->command_id != arguments.request->command.id) continue;
+      print_feedback(arguments, *feedback);
       if (is_final(feedback->state)) return feedback->state == FeedbackState::finished ? kFine : kFailed;
     }
   }
-  return fail({ErrorCode::timeout, "no final answer to command " + std::to_string(arguments.command.id) +
+  return fail({ErrorCode::timeout, "no final answer to command " + std::to_string(arguments.request->command.id) +
                                        " within " + std::to_string(arguments.timeout_s) + " s"});
 }
 
@@ -123,184 +67,38 @@ int wait_until_taken(Endpoint& endpoint) {
   return fail({ErrorCode::timeout, "the peer did not take the message within 3 s"});
 }
 
-int run(Arguments& arguments) {
+int run_send(SendArguments& arguments) {
+  Request& request = *arguments.request;
   if (arguments.link.address.empty()) {
-    arguments.link.address = arguments.is_control ? "127.0.0.1:7401" : "127.0.0.1:7402";
+    arguments.link.address = request.is_control ? "127.0.0.1:7401" : "127.0.0.1:7402";
   }
-  if (arguments.command.id == 0) arguments.command.id = new_id();
-  arguments.control.id = arguments.command.id;
-  const Message message = arguments.is_control ? Message(arguments.control) : Message(arguments.command);
-  const auto good = arguments.is_control
-                        ? from_json_text<Control>(to_json_text(arguments.control)).map([](const Control&) {})
-                        : from_json_text<Command>(to_json_text(arguments.command)).map([](const Command&) {});
-  if (!good) {
-    std::cerr << "vhp: " << good.error().message << '\n';
-    return kWrongUsage;
-  }
+  if (request.command.id == 0) request.command.id = new_id();
+  request.control.id = request.command.id;
+  const auto message = message_of(request);
+  if (!message) return fail({ErrorCode::invalid_argument, message.error().message});
   auto endpoint = open_link(arguments.link, Role::director, false);
   if (!endpoint) return fail(endpoint.error());
-  (*endpoint)->broadcast(message);
-  if (arguments.is_control || arguments.no_wait) return wait_until_taken(**endpoint);
+  (*endpoint)->broadcast(*message);
+  if (request.is_control || arguments.no_wait) return wait_until_taken(**endpoint);
   return wait_for_answer(arguments, **endpoint);
-}
-
-[[noreturn]] void reject(const Error& error) {
-  throw CLI::ValidationError("send", error.message);
-}
-
-template <class E>
-E word(const std::string& name) {
-  const auto value = from_name<E>(name);
-  if (!value) reject({ErrorCode::invalid_argument, "\"" + name + "\" must be one of " + all_names<E>()});
-  return *value;
-}
-
-using Shared = std::shared_ptr<Arguments>;
-
-// A subcommand whose `fill` puts what was written into the command.
-template <class Fill>
-CLI::App* verb(CLI::App& send, const char* name, const char* what, const Shared& arguments, int& exit_code, Fill fill) {
-  CLI::App* command = send.add_subcommand(name, what);
-  command->fallthrough();
-  command->callback([arguments, &exit_code, fill] {
-    fill(*arguments);
-    exit_code = run(*arguments);
-  });
-  return command;
-}
-
-void add_grasp(CLI::App& send, const Shared& a, int& exit_code) {
-  CLI::App* command = verb(send, "grasp", "Take a piece along a path of places", a, exit_code, [](Arguments& args) {
-    auto path = read_path(args);
-    if (!path) reject(path.error());
-    args.grasp.path_B = *path;
-    args.grasp.hand = word<Hand>(args.hand);
-    if (args.grasp.piece == "-") args.grasp.piece.clear();
-    args.command.action = args.grasp;
-  });
-  command->add_option("piece", a->grasp.piece, "Name of the piece, e.g. light_31; - only touches the place")->required();
-  command->add_option("path", a->path, "Places: squares' numbers, or X,Y[,Z] in metres")->required();
-  command->add_option("--hand", a->hand, "any, left or right");
-  command->add_option("--style", a->grasp.style, "\"\", slam or hesitant");
-  command->add_option("--duration", a->grasp.duration_s, "Seconds; 0: as a person would take");
-}
-
-void add_keyframe(CLI::App& send, const Shared& a, int& exit_code) {
-  CLI::App* command = verb(send, "keyframe", "Play a clip", a, exit_code, [](Arguments& args) {
-    args.keyframe.part = word<BodyPart>(args.part);
-    args.command.action = args.keyframe;
-  });
-  command->add_option("clip", a->keyframe.clip, "nod, head_shake, ...")->required();
-  command->add_option("--speed", a->keyframe.speed, "1: as made");
-  command->add_option("--weight", a->keyframe.weight, "0..1");
-  command->add_option("--part", a->part, "whole, upper, head, left_arm, right_arm, face, legs");
-  command->add_flag("--loop", a->keyframe.loop, "Until stopped");
-}
-
-void add_navigate(CLI::App& send, const Shared& a, int& exit_code) {
-  CLI::App* command = verb(send, "navigate", "Walk somewhere", a, exit_code, [](Arguments& args) {
-    auto path = read_path(args);
-    if (!path) reject(path.error());
-    args.navigate.path_B = *path;
-    args.command.action = args.navigate;
-  });
-  command->add_option("place", a->navigate.place, "entrance, chair, seat or away");
-  command->add_option("--path", a->path, "Floor points X,Y in metres");
-  command->add_option("--heading", a->navigate.heading_rad, "At the end of the path, radians from x towards y");
-  command->add_option("--gait", a->navigate.gait, "walk or hurry");
-}
-
-void add_gaze(CLI::App& send, const Shared& a, int& exit_code) {
-  CLI::App* command = verb(send, "gaze", "Look at something", a, exit_code, [](Arguments& args) {
-    args.gaze.target = word<GazeTarget>(args.target);
-    if (args.gaze.target == GazeTarget::piece) args.gaze.piece = args.what;
-    if (args.gaze.target == GazeTarget::square || args.gaze.target == GazeTarget::point) {
-      auto point = read_point(args.what, args.board);
-      if (!point) reject(point.error());
-      args.gaze.point_B = *point;
-      if (args.gaze.target == GazeTarget::square) args.gaze.square = std::atoi(args.what.c_str());
-    }
-    args.command.action = args.gaze;
-  });
-  command->add_option("target", a->target, "square, piece, player, camera, point or ahead")->required();
-  command->add_option("what", a->what, "The square's number, the piece's name or X,Y,Z");
-  command->add_option("--hold", a->gaze.hold_s, "Seconds; 0: until the next gaze");
-}
-
-void add_others(CLI::App& send, const Shared& a, int& exit_code) {
-  CLI::App* say = verb(send, "say", "Speak", a, exit_code, [](Arguments& args) { args.command.action = args.say; });
-  say->add_option("text", a->say.text, "What to say")->required();
-  say->add_option("--language", a->say.language, "en, fr, ...");
-  say->add_option("--code", a->say.code, "What is meant");
-
-  CLI::App* express =
-      verb(send, "express", "Put on a face", a, exit_code, [](Arguments& args) { args.command.action = args.express; });
-  express->add_option("face", a->express.face, "neutral, smile, frown, surprise, doubt or sad")->required();
-  express->add_option("--weight", a->express.weight, "0..1");
-  express->add_option("--hold", a->express.hold_s, "Seconds; 0: until the next face");
-
-  CLI::App* stop =
-      verb(send, "stop", "Stop commands", a, exit_code, [](Arguments& args) { args.command.action = args.stop; });
-  stop->add_option("ids", a->stop.commands, "Ids of the commands; none: everything");
-
-  CLI::App* raw = verb(send, "json", "A command as docs/protocol.md writes it", a, exit_code, [](Arguments& args) {
-    auto command = from_json_text<Command>(args.raw);
-    if (!command) reject(command.error());
-    args.command = *command;
-  });
-  raw->add_option("command", a->raw, R"({"id":1,"verb":"say","text":"hello"})")->required();
-
-  CLI::App* control = verb(send, "control", "Ask something of the game", a, exit_code, [](Arguments& args) {
-    args.is_control = true;
-    args.control.kind = word<ControlKind>(args.kind);
-    for (const std::string& value : args.control_values) {
-      if (args.control.kind == ControlKind::corners) {
-        auto corner = read_point(value, args.board);
-        if (!corner || value.find(',') == std::string::npos) {
-          reject({ErrorCode::invalid_argument, "corners are four X,Y in pixels"});
-        }
-        args.control.corners_px.insert(args.control.corners_px.end(), {(*corner)[0], (*corner)[1]});
-      } else if (args.control.kind == ControlKind::level) {
-        args.control.number = std::atoi(value.c_str());
-      } else {
-        args.control.text += (args.control.text.empty() ? "" : " ") + value;
-      }
-    }
-  });
-  control->add_option("kind", a->kind, "new_game, undo, resign, pause, resume, read_again, it_was, level, swap_sides, "
-                                       "corners, hint or quit")
-      ->required();
-  control->add_option("values", a->control_values, "A FEN, a move, a level, or four corners X,Y in pixels");
 }
 
 }  // namespace
 
 void add_send(CLI::App& app, int& exit_code) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<SendArguments>();
   CLI::App* send = app.add_subcommand("send", "Sends one command (or control) and waits for its final answer");
   send->require_subcommand(1);
   send->add_option("--to", a->link.address,
                    "HOST:PORT; default: the renderer at 127.0.0.1:7402, for control the tracker at 127.0.0.1:7401");
-  send->add_option("--id", a->command.id, "Of the command; 0: a new one");
-  send->add_option("--after", a->command.after, "Wait until these commands have ended")->delimiter(',');
-  send->add_option("--delay-ms", a->command.delay_ms, "And then so long")->check(CLI::NonNegativeNumber);
-  send->add_option("--deadline-ms", a->command.deadline_ms, "Fail if not finished after so long")
-      ->check(CLI::NonNegativeNumber);
-  send->add_flag("--interrupt", a->command.interrupt, "Cancel what holds the same body parts");
-  send->add_option("--squares", a->board.squares, "Squares a side, for places given by number")
-      ->check(CLI::IsMember({8, 10}));
-  send->add_option("--square-size", a->board.square_size_m, "Metres")->check(CLI::PositiveNumber);
   send->add_option("--timeout", a->timeout_s, "Seconds to wait for the final answer")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   send->add_flag("--no-wait", a->no_wait, "Only until the peer has taken it");
   send->add_option("--token-file", a->link.token_file, "The shared token, for other hosts");
   send->add_flag("--json", a->json, "Answers as JSON lines");
-  add_grasp(*send, a, exit_code);
-  add_keyframe(*send, a, exit_code);
-  add_navigate(*send, a, exit_code);
-  add_gaze(*send, a, exit_code);
-  add_others(*send, a, exit_code);
+  add_request(*send, a->request);
+  send->callback([a, &exit_code] { exit_code = run_send(*a); });
 }
 
 }  // namespace counterpart::vhp

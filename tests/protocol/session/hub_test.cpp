@@ -314,6 +314,23 @@ TEST(Hub, KnowsTheOffsetOfTheOtherClock) {
   EXPECT_LE(stats[0].clock_bound_ns, 3 * kMs);  // the test's wire takes up to a millisecond each way
 }
 
+// An attempt that began while the link was silent is lost, whenever that was; the next one must not wait long.
+TEST(Hub, TheSessionIsResumedWithinASecondAfterTheLinkIsBack) {
+  for (std::int64_t gap_ms = 3'000; gap_ms < 4'500; gap_ms += 97) {
+    World world;
+    world.run(200);
+    world.received<Feedback>(world.client);
+    world.joins.clear();
+    world.deaf = true;
+    world.run(gap_ms);
+    world.deaf = false;
+    world.run(1'000);
+    world.received<Feedback>(world.client);
+    ASSERT_EQ(world.joins.size(), 1U) << gap_ms;
+    EXPECT_TRUE(world.joins[0].resumed) << gap_ms;
+  }
+}
+
 TEST(Hub, ASessionEndsWhenTooMuchWaitsForAPeerThatIsAway) {
   World world;
   world.run(5);

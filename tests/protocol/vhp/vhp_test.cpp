@@ -73,6 +73,25 @@ TEST(Vhp, WrongUsageIsExitCodeTwoWithASentence) {
   EXPECT_EQ(vhp("--version").out, "vhp " COUNTERPART_VERSION "\n");
 }
 
+// The words that bash offers after these.
+std::string completed(const std::string& words) {
+  const std::string line = "PATH=" COUNTERPART_BIN_DIR ":$PATH bash -c 'eval \"$(vhp completion)\"; COMP_WORDS=(" +
+                           words + "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _vhp; echo \"${COMPREPLY[*]}\"'";
+  std::string out;
+  FILE* pipe = popen(line.c_str(), "r");
+  std::array<char, 4096> buffer{};
+  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe)) out.append(buffer.data(), count);
+  pclose(pipe);
+  return out;
+}
+
+TEST(Vhp, BashCompletesItsWords) {
+  EXPECT_EQ(completed("vhp cap"), "capture\n");
+  EXPECT_EQ(completed("vhp capture rec"), "recover\n");
+  EXPECT_EQ(completed("vhp send grasp --st"), "--style\n");
+  EXPECT_EQ(completed("vhp send control res"), "resign resume\n");
+}
+
 TEST(Vhp, NobodyThereIsExitCodeOneWithASentence) {
   for (const char* arguments : {"monitor 127.0.0.1:1", "send say hello --to 127.0.0.1:1", "capture info /nowhere.mcap",
                                 "record 127.0.0.1:1 /nowhere/at/all.mcap"}) {

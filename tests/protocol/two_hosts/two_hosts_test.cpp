@@ -1,0 +1,117 @@
+// Two network namespaces with a bad line between them, and a clock on one that is 1000 s ahead. Needs root.
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "tests/protocol/robustness/scale.hpp"
+#include "tests/support/program.hpp"
+
+namespace counterpart {
+namespace {
+
+using testing_support::Outcome;
+using testing_support::Program;
+using testing_support::run;
+using testing_support::TemporaryFolder;
+
+using std::chrono::seconds;
+using Words = std::vector<std::string>;
+
+constexpr const char* kAddress = "10.99.7.1:7401";
+constexpr int kAheadS = 1000;
+
+Outcome ip(const Words& arguments) {
+  return run("/sbin/ip", arguments);
+}
+
+struct LineOptions {
+  double delay_ms = 20, jitter_ms = 0, loss = 0, reorder = 0;
+};
+
+class TwoHosts : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (::geteuid() != 0) GTEST_SKIP() << "network namespaces need root";
+    if (!std::filesystem::exists("/sbin/ip")) GTEST_SKIP() << "the program ip (package iproute2) is missing";
+    if (!std::filesystem::exists("/dev/net/tun")) GTEST_SKIP() << "/dev/net/tun is missing";
+    begun_ = true;
+    for (const std::string& host : {tracker_host_, renderer_host_}) {
+      const Outcome added = ip({"netns", "add", host});
+      if (added.exit_code != 0) GTEST_SKIP() << "network namespaces are not permitted here: " << added.err;
+    }
+    std::ofstream(folder_.path("token")) << "0123456789abcdef0123456789abcdef\n";
+    std::filesystem::permissions(folder_.path("token"), std::filesystem::perms::owner_read);
+  }
+
+  void TearDown() override {
+    line_.reset();
+    if (!begun_) return;
+    for (const std::string& host : {tracker_host_, renderer_host_}) ip({"netns", "delete", host});
+  }
+
+  void connect(const LineOptions& options) {
+    line_ = std::make_unique<Program>(
+        "impaired_link",
+        Words{tracker_host_, renderer_host_, std::to_string(options.delay_ms), std::to_string(options.jitter_ms),
+              std::to_string(options.loss), std::to_string(options.reorder), "7"});
+    ASSERT_TRUE(line_->wait_for_stderr("ready", seconds(10))) << line_->stderr_text();
+    const Words mine{"10.99.7.1", "10.99.7.2"};
+    for (std::size_t i = 0; i < 2; ++i) {
+      const std::string host = i == 0 ? tracker_host_ : renderer_host_;
+      ASSERT_EQ(ip({"-n", host, "address", "add", mine[i], "peer", mine[1 - i], "dev", "far0"}).exit_code, 0);
+      ASSERT_EQ(ip({"-n", host, "link", "set", "far0", "up"}).exit_code, 0);
+    }
+  }
+
+  // What the renderer says it saw of so many frames.
+  nlohmann::json play(int frames, int per_second) {
+    const std::string bin = COUNTERPART_BIN_DIR "/far_worker", token = folder_.path("token");
+    Program tracker("/sbin/ip",
+                    {"netns", "exec", tracker_host_, "unshare", "--time", "--monotonic", std::to_string(kAheadS),
+                     "--fork", bin, "tracker", kAddress, token, std::to_string(frames), std::to_string(per_second)});
+    const Outcome renderer =
+        run("/sbin/ip",
+            {"netns", "exec", renderer_host_, bin, "renderer", kAddress, token, std::to_string(kAheadS) + "000000000"},
+            seconds(60 + 2 * frames / per_second));
+    EXPECT_EQ(renderer.exit_code, 0) << renderer.err << tracker.stderr_text();
+    std::cout << "  " << renderer.out;
+    return nlohmann::json::parse(renderer.out, nullptr, false);
+  }
+
+  bool begun_ = false;
+  TemporaryFolder folder_;
+  const std::string tracker_host_ = "cp_a" + std::to_string(::getpid());
+  const std::string renderer_host_ = "cp_b" + std::to_string(::getpid());
+  std::unique_ptr<Program> line_;
+};
+
+TEST_F(TwoHosts, NoFrameMeetsAnothersPose) {
+  ASSERT_NO_FATAL_FAILURE(connect({20, 0, 0.01, 0.02}));
+  const int frames = scaled(1'500, 100'000);
+  const auto seen = play(frames, 500);
+  ASSERT_TRUE(seen.is_object());
+  EXPECT_EQ(seen["wrong"], 0);
+  EXPECT_GE(seen["composited"].get<int>(), frames / 20) << "too few to say anything";
+}
+
+// How close the offset comes depends on the machine's load and is only told; its bound must hold whatever the load.
+TEST_F(TwoHosts, TheClockOffsetIsInsideItsBound) {
+  for (const double jitter_ms : {0.0, 10.0}) {
+    ASSERT_NO_FATAL_FAILURE(connect({20, jitter_ms, 0, 0}));
+    const auto seen = play(scaled(100, 1'200), 20);
+    ASSERT_TRUE(seen.is_object());
+    EXPECT_GE(seen["clock_looks"].get<int>(), 30);
+    EXPECT_GE(seen["clock_inside_bound"].get<double>(), 0.99 * seen["clock_looks"].get<double>());
+    line_.reset();
+  }
+}
+
+}  // namespace
+}  // namespace counterpart
