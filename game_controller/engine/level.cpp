@@ -45,7 +45,7 @@ Choice choose(Searcher& searcher, const Rules& rules, const Position& position,
   limits.nodes = plan.nodes;
   limits.give_up = give_up;
   const SearchReport report = searcher.search(position, earlier, limits);
-  return {{report.line.front(), report.value}, report.line};
+  return {{report.line.front(), report.value}, report.line, report.nodes};
 }
 
 double acted_thinking_s(const Rules& rules, const Position& position) {
