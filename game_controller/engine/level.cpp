@@ -13,11 +13,11 @@ constexpr std::array<LevelPlan, highest_level> plans{{
     {Evaluation::material, 1, 0, 60},
     {Evaluation::material, 2, 0, 30},
     {Evaluation::plain, 3, 0, 12},
-    {Evaluation::plain, 5, 20'000, 0},
-    {Evaluation::trained, 7, 60'000, 0},
-    {Evaluation::trained, 9, 150'000, 0},
-    {Evaluation::trained, 12, 500'000, 0},
-    {Evaluation::trained, 60, 1'500'000, 0},
+    {Evaluation::plain, 4, 0, 0},
+    {Evaluation::trained, 60, 4'000, 0},
+    {Evaluation::trained, 60, 20'000, 0},
+    {Evaluation::trained, 60, 120'000, 0},
+    {Evaluation::trained, 60, 1'000'000, 0},
 }};
 
 }  // namespace

@@ -16,7 +16,7 @@ constexpr float logits_a_man = 1.2F;  // how surely a man more wins in these gam
 
 struct Knob {
   float value = 0;
-  float seen = 1e-4F;  // sum of squared gradients
+  float seen = 10;  // sum of squared gradients; so much at first that one sight of a rare pattern teaches little
 };
 
 // The regression's own weights: two knobs where the evaluation has one staged weight. What halves of a block are worth

@@ -16,7 +16,7 @@ constexpr const Rules& rules = international_rules;
 constexpr std::size_t table_bytes = std::size_t{1} << 20;
 constexpr int surely_decided = win_value - 500;
 constexpr int longest_game_plies = 240;
-constexpr int unfair_start = 2 * man_value;
+constexpr int unfair_start = man_value;
 constexpr int patience_with_kings_plies = 12;  // both sides have one: by then what can be won has been won
 
 bool can_capture_at_all(const Position& p) {
@@ -92,7 +92,8 @@ std::vector<Lesson> play_lessons(const SelfPlayOptions& options,
   Dice dice(options.seed);
   Searcher searcher(rules, options.evaluation, table_bytes, options.weights);
   for (int game = 0; game < options.games;) {
-    const auto start = random_start(dice, options.random_plies);
+    const int fewest = options.random_plies / 2;
+    const auto start = random_start(dice, fewest + dice.roll(options.random_plies - fewest + 1));
     if (!start) continue;
     searcher.clear();
     if (!Lecture(searcher, options.depth, lessons).play(*start, game)) continue;
