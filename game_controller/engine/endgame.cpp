@@ -11,8 +11,7 @@
 namespace counterpart {
 namespace {
 
-constexpr const Rules& rules = international_rules;
-constexpr int squares = 50;
+constexpr int board_squares = 50;
 constexpr int longest_win_plies = 250;
 constexpr char mark[] = "counterpart endgames 1\n";
 
@@ -33,7 +32,7 @@ struct Material {
 
 std::size_t positions_of(const Material& m) {
   std::size_t n = 1;
-  for (int i = 0; i < m.pieces(); ++i) n *= squares;
+  for (int i = 0; i < m.pieces(); ++i) n *= board_squares;
   return n;
 }
 
@@ -55,7 +54,7 @@ Material material_of(const Position& p) {
 
 std::size_t append(std::size_t index, Bits pieces) {
   for (; pieces != 0; pieces &= pieces - 1) {
-    index = index * squares + static_cast<std::size_t>(square_of_bit(lowest(pieces), 10) - 1);
+    index = index * board_squares + static_cast<std::size_t>(square_of_bit(lowest(pieces), 10) - 1);
   }
   return index;
 }
@@ -70,8 +69,8 @@ std::optional<Position> position_at(const Material& m, std::size_t index) {
   std::array<int, EndgameTables::most_pieces> on{};
   const int n = m.pieces();
   for (int i = n - 1; i >= 0; --i) {
-    on[static_cast<std::size_t>(i)] = static_cast<int>(index % squares) + 1;
-    index /= squares;
+    on[static_cast<std::size_t>(i)] = static_cast<int>(index % board_squares) + 1;
+    index /= board_squares;
   }
   Position p;
   std::size_t at = 0;
@@ -110,12 +109,12 @@ using Tables = std::array<std::vector<std::uint8_t>, 256>;
 // The value of a position with light to move from those after its moves: 0 while it is not known.
 std::uint8_t worked_back(const Tables& tables, const Position& p) {
   MoveList moves;
-  generate(rules, p, moves);
+  generate(international_rules, p, moves);
   int best_win = 256;
   int longest_loss = 0;
   bool all_lose = true;
   for (const Move& move : moves) {
-    const Position q = with_light_to_move(after(rules, p, move));
+    const Position q = with_light_to_move(after(international_rules, p, move));
     // Plies + 1 of the other side; none left: it has lost at once.
     const int theirs = q.light == 0 ? 1 : tables[material_of(q).number()][index_of(q)];
     const bool they_lose = theirs % 2 == 1;

@@ -9,7 +9,7 @@
 namespace counterpart {
 namespace {
 
-constexpr std::size_t table_bytes = std::size_t{32} << 20;
+constexpr std::size_t own_mind_table_bytes = std::size_t{32} << 20;
 constexpr std::size_t lockstep_table_bytes = std::size_t{4} << 20;  // cleared before each move, so small
 
 Result<Position> playable(const Rules& rules, const std::string& fen) {
@@ -41,7 +41,7 @@ class OwnMind final : public Mind {
         plan_(plan_of_level(options.level)),
         seed_(options.seed),
         lockstep_(options.lockstep),
-        searcher_(rules, plan_.evaluation, options.lockstep ? lockstep_table_bytes : table_bytes) {}
+        searcher_(rules, plan_.evaluation, options.lockstep ? lockstep_table_bytes : own_mind_table_bytes) {}
 
   Result<OpponentMove> answer(const std::string& fen, const std::function<bool()>& give_up) override {
     const auto position = playable(rules_, fen);

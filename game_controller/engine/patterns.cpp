@@ -84,7 +84,9 @@ PatternView view_patterns(const Position& p) {
       if (r == 2) middle_turned[static_cast<std::size_t>(c)] = pair_tables.turned[both];
     }
   }
-  const auto state = [](int first, int second) { return static_cast<std::uint16_t>(first * half_pattern_states + second); };
+  const auto state = [](int first, int second) {
+    return static_cast<std::uint16_t>(first * half_pattern_states + second);
+  };
   for (std::size_t c = 0; c < columns; ++c) {
     const std::size_t d = columns - 1 - c;  // the same column with the board turned round
     view.states[c] = state(pair[0][c], pair[1][c]);

@@ -15,8 +15,8 @@ namespace counterpart {
 inline constexpr int pattern_count = 13;
 inline constexpr int half_pattern_states = 81;  // four squares (two by two), each empty, light man or dark man
 inline constexpr int pattern_states = half_pattern_states * half_pattern_states;
-inline constexpr int full_stage = 40;        // pieces on the board
-inline constexpr int weight_unit = 8;        // weights are in eighths of a hundredth of a man
+inline constexpr int full_stage = 40;  // pieces on the board
+inline constexpr int weight_unit = 8;  // weights are in eighths of a hundredth of a man
 
 // What patterns of men do not tell; each counted for light minus for dark.
 enum Extra {

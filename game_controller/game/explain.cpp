@@ -10,13 +10,13 @@
 namespace counterpart {
 namespace {
 
-constexpr std::size_t table_bytes = std::size_t{1} << 20;
+constexpr std::size_t explaining_table_bytes = std::size_t{1} << 20;
 constexpr std::uint64_t hint_nodes = 20'000;  // a hundredth of a second: it is done within a frame
-constexpr std::size_t longest_line = 5;
+constexpr std::size_t longest_told_line = 5;
 constexpr int as_good = man_value / 4;  // a move that is worse by no more is not found fault with
 
 SearchReport look_ahead(const Record& record) {
-  Searcher searcher(record.rules(), Evaluation::trained, table_bytes);
+  Searcher searcher(record.rules(), Evaluation::trained, explaining_table_bytes);
   std::vector<std::uint64_t> earlier = record.keys();
   earlier.pop_back();
   SearchLimits limits;
@@ -27,7 +27,7 @@ SearchReport look_ahead(const Record& record) {
 // "32-28, then 19-23 and 28x19"
 std::string spoken(const Rules& rules, Position at, const std::vector<Move>& line) {
   std::string text;
-  const std::size_t n = std::min(line.size(), longest_line);
+  const std::size_t n = std::min(line.size(), longest_told_line);
   for (std::size_t i = 0; i < n; ++i) {
     if (i > 0) text += i == 1 ? ", then " : i + 1 == n ? " and " : ", ";
     text += pdn_text(rules, at, line[i]);
@@ -88,9 +88,9 @@ void Game::State::explain_last() {
   if (best.line.empty() || best.line.front() == made || best.value + answer.value <= as_good) {
     return human.say("last_move_good", "Your move " + name + " was good.");
   }
-  human.say("last_move_weak",
-            "After your move " + name + " I can play " + spoken(*rules, then.position(), answer.line) +
-                ". Better was " + spoken(*rules, before.position(), best.line) + ".");
+  human.say("last_move_weak", "After your move " + name + " I can play " +
+                                  spoken(*rules, then.position(), answer.line) + ". Better was " +
+                                  spoken(*rules, before.position(), best.line) + ".");
 }
 
 // Players take some legal captures for errors; each such rule is told the first time it shows.

@@ -14,9 +14,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int version = 1;
+constexpr int save_version = 1;
 constexpr std::size_t longest_save = 1 << 20;
-constexpr std::size_t most_moves = 5'000;
+constexpr std::size_t most_saved_moves = 5'000;
 
 tl::unexpected<Error> unusable(const std::string& why) {
   return failure(ErrorCode::bad_format, "The saved game cannot be used: " + why + ". Delete it to start afresh.");
@@ -34,7 +34,7 @@ E checked_enum(const json& saved, const char* name, int lowest, int highest) {
 std::string Game::save() const {
   const State& s = *state_;
   json saved;
-  saved["version"] = version;
+  saved["version"] = save_version;
   saved["rules"] = s.rules->name;
   saved["virtual_side"] = static_cast<int>(s.options.virtual_side);
   saved["start"] = write_hub_position(*s.rules, s.record.start());
@@ -59,7 +59,7 @@ Result<Game> Game::resume(const GameOptions& options, const std::string& text) {
   if (text.size() > longest_save) return unusable("it is too large");
   try {
     const json saved = json::parse(text);
-    if (saved.at("version").get<int>() != version) return unusable("it is of another version of this program");
+    if (saved.at("version").get<int>() != save_version) return unusable("it is of another version of this program");
     GameOptions kept = options;
     kept.rules = saved.at("rules").get<std::string>();
     kept.virtual_side = checked_enum<Side>(saved, "virtual_side", 1, 2);
@@ -70,7 +70,7 @@ Result<Game> Game::resume(const GameOptions& options, const std::string& text) {
     if (!start) return unusable(start.error().message);
     auto state = std::make_unique<State>(kept, *rules, *start, saved.at("next_command").get<std::uint64_t>());
     State& s = *state;
-    if (saved.at("moves").size() > most_moves) return unusable("it has too many moves");
+    if (saved.at("moves").size() > most_saved_moves) return unusable("it has too many moves");
     for (const json& word : saved.at("moves")) {
       const auto move = read_move(*rules, s.record.position(), word.get<std::string>(), MoveStyle::hub);
       if (!move) return unusable(move.error().message);

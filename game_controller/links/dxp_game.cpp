@@ -13,7 +13,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr const Rules& rules = international_rules;
 constexpr double patience_with_farewell_s = 5;
 constexpr std::size_t longest_game_plies = 2'000;
 
@@ -32,12 +31,12 @@ std::optional<Move> legal_move(const Position& position, const DxpMove& told) {
   Bits captured = 0;
   for (const int square : told.captured) {
     if (square < 1 || square > 50) return std::nullopt;
-    captured |= square_mask(square, rules.squares);
+    captured |= square_mask(square, international_rules.squares);
   }
-  const auto from = static_cast<std::uint8_t>(bit_of_square(told.from, rules.squares));
-  const auto to = static_cast<std::uint8_t>(bit_of_square(told.to, rules.squares));
+  const auto from = static_cast<std::uint8_t>(bit_of_square(told.from, international_rules.squares));
+  const auto to = static_cast<std::uint8_t>(bit_of_square(told.to, international_rules.squares));
   MoveList legal;
-  generate(rules, position, legal);
+  generate(international_rules, position, legal);
   for (const Move& move : legal) {
     if (move == Move{captured, from, to}) return move;
   }
@@ -82,9 +81,9 @@ class DxpGame {
     if (player_.give_up && player_.give_up()) return finish(GameResult::open, "stopped", true);
     DxpMove told;
     told.seconds = static_cast<int>(std::chrono::duration<double>(Clock::now() - start).count());
-    told.from = square_of_bit(move.from, rules.squares);
-    told.to = square_of_bit(move.to, rules.squares);
-    told.captured = squares_of_bits(move.captured, rules.squares);
+    told.from = square_of_bit(move.from, international_rules.squares);
+    told.to = square_of_bit(move.to, international_rules.squares);
+    told.captured = squares_of_bits(move.captured, international_rules.squares);
     if (!send(channel_, told)) return finish(win_of(game_.our_side), "closed", true);
     play(move);
   }
@@ -160,8 +159,8 @@ class DxpGame {
 };
 
 Result<Position> position_of(const DxpGameRequest& request) {
-  return request.position.empty() ? Result<Position>(start_position(rules))
-                                  : read_hub_position(rules, request.position);
+  return request.position.empty() ? Result<Position>(start_position(international_rules))
+                                  : read_hub_position(international_rules, request.position);
 }
 
 }  // namespace
@@ -181,8 +180,8 @@ Result<DxpResult> ask_for_dxp_game(Channel& channel, const DxpGameRequest& reque
       return failure(ErrorCode::refused, "\"" + answer->name + "\" will not play: " +
                                              (answer->code <= 3 ? reasons[answer->code] : "it did not say why") + ".");
     }
-    return DxpGame(channel, player, Record(rules, *start), other(request.follower_side), request.minutes, request.moves,
-                   answer->name)
+    return DxpGame(channel, player, Record(international_rules, *start), other(request.follower_side), request.minutes,
+                   request.moves, answer->name)
         .play();
   }
 }
@@ -202,8 +201,8 @@ Result<DxpResult> answer_dxp_game(Channel& channel, const DxpPlayer& player) {
       return tl::make_unexpected(sent.error());
     }
     if (!start) continue;
-    return DxpGame(channel, player, Record(rules, *start), request->follower_side, request->minutes, request->moves,
-                   request->name)
+    return DxpGame(channel, player, Record(international_rules, *start), request->follower_side, request->minutes,
+                   request->moves, request->name)
         .play();
   }
 }

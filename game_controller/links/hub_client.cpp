@@ -12,11 +12,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr const Rules& rules = international_rules;
-constexpr std::size_t longest_line = std::size_t{64} << 10;
 constexpr double patience_with_stop_s = 2;
 
-double seconds_since(Clock::time_point start) {
+double waited_s(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
@@ -27,10 +25,10 @@ std::vector<Move> read_line(const Position& root, const std::string& text) {
   std::size_t begin = 0;
   while ((begin = text.find_first_not_of(' ', begin)) != std::string::npos && line.size() < 100) {
     const std::size_t end = std::min(text.find(' ', begin), text.size());
-    const auto move = read_move(rules, at, text.substr(begin, end - begin), MoveStyle::hub);
+    const auto move = read_move(international_rules, at, text.substr(begin, end - begin), MoveStyle::hub);
     if (!move) break;
     line.push_back(*move);
-    at = after(rules, at, *move);
+    at = after(international_rules, at, *move);
     begin = end;
   }
   return line;
@@ -56,15 +54,15 @@ Result<HubClient> HubClient::start(const std::string& command, double patience_s
 
 Result<HubAnswer> HubClient::ask(const Position& position, double move_time_s, const std::function<bool()>& give_up) {
   std::string seconds = std::to_string(move_time_s);
-  for (const std::string& line :
-       {"pos pos=" + write_hub_position(rules, position), "level move-time=" + seconds, std::string("go think")}) {
+  for (const std::string& line : {"pos pos=" + write_hub_position(international_rules, position),
+                                  "level move-time=" + seconds, std::string("go think")}) {
     if (auto sent = say(line); !sent) return tl::make_unexpected(sent.error());
   }
   HubAnswer answer;
   const auto start = Clock::now();
   const double patience_s = 2 * move_time_s + 2;
   while (true) {
-    const auto line = next_line(patience_s - seconds_since(start), give_up);
+    const auto line = next_line(patience_s - waited_s(start), give_up);
     if (!line) {
       if (line.error().code == ErrorCode::refused) stop();
       return tl::make_unexpected(line.error());
@@ -77,7 +75,7 @@ Result<HubAnswer> HubClient::ask(const Position& position, double move_time_s, c
       return failure(ErrorCode::bad_format, name_ + " says: " + (message != nullptr ? *message : "error"));
     } else if (line->command == "done") {
       const auto* text = line->find("move");
-      const auto move = read_move(rules, position, text != nullptr ? *text : "", MoveStyle::hub);
+      const auto move = read_move(international_rules, position, text != nullptr ? *text : "", MoveStyle::hub);
       if (!move) return failure(ErrorCode::invalid_argument, name_ + " made an illegal move: " + move.error().message);
       answer.move = *move;
       if (answer.line.empty() || !(answer.line.front() == *move)) answer.line = {*move};
@@ -87,7 +85,7 @@ Result<HubAnswer> HubClient::ask(const Position& position, double move_time_s, c
 }
 
 Result<HubLine> HubClient::next_line(double timeout_s, const std::function<bool()>& give_up) {
-  const auto text = child_.channel().receive('\n', longest_line, timeout_s, give_up);
+  const auto text = child_.channel().receive('\n', longest_hub_line, timeout_s, give_up);
   if (!text) return tl::make_unexpected(text.error());
   return read_hub_line(*text);
 }
@@ -99,7 +97,7 @@ Result<void> HubClient::say(const std::string& line) {
 Result<void> HubClient::wait_for(const std::string& command, double patience_s) {
   const auto start = Clock::now();
   while (true) {
-    const auto line = next_line(patience_s - seconds_since(start));
+    const auto line = next_line(patience_s - waited_s(start));
     if (!line) return tl::make_unexpected(line.error());
     if (line->command == command) return {};
     if (const auto* name = line->find("name"); name != nullptr && line->command == "id") name_ = *name;

@@ -26,7 +26,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t most_moves = 5'000;
+constexpr std::size_t most_hub_moves = 5'000;
 constexpr double reserve_s = 0.003;  // for the way of the answer
 
 std::string number(double value, const char* format) {
@@ -155,7 +155,7 @@ class HubEngine {
         const std::size_t end = std::min(moves->find(' ', at), moves->size());
         const auto move = read_move(rules_, record.position(), moves->substr(at, end - at), MoveStyle::hub);
         if (!move) return error(move.error().message);
-        if (record.moves().size() >= most_moves) return error("too many moves");
+        if (record.moves().size() >= most_hub_moves) return error("too many moves");
         record.play(*move);
         at = end;
       }

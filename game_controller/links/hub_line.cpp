@@ -8,8 +8,6 @@
 namespace counterpart {
 namespace {
 
-constexpr std::size_t longest_line = std::size_t{64} << 10;
-
 bool is_blank(char c) {
   return std::isspace(static_cast<unsigned char>(c)) != 0;
 }
@@ -84,7 +82,7 @@ HubLine& HubLine::with(std::string name, std::string value) {
 }
 
 Result<HubLine> read_hub_line(std::string_view text) {
-  if (text.size() > longest_line) return failure(ErrorCode::limit_exceeded, "a line is longer than 64 KiB");
+  if (text.size() > longest_hub_line) return failure(ErrorCode::limit_exceeded, "a line is longer than 64 KiB");
   return LineReader(text).read();
 }
 

@@ -1,6 +1,7 @@
 // Lines of the Hub protocol, version 2: a command, then name=value, name="quoted value" or bare flags.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,8 @@
 #include "protocol/vocabulary/result.hpp"
 
 namespace counterpart {
+
+constexpr std::size_t longest_hub_line = std::size_t{64} << 10;  // bytes; longer ones are refused
 
 struct HubLine {
   std::string command;

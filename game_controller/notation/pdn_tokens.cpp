@@ -5,13 +5,13 @@
 namespace counterpart {
 namespace {
 
-bool is_blank(char c) {
+bool is_space(char c) {
   return std::isspace(static_cast<unsigned char>(c)) != 0;
 }
 
 // Ends a word: blanks and all that begins another token.
 bool ends_word(char c) {
-  return is_blank(c) || std::string_view("[]{}()\"/$!?;").find(c) != std::string_view::npos;
+  return is_space(c) || std::string_view("[]{}()\"/$!?;").find(c) != std::string_view::npos;
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ void PdnTokens::skip_blanks_and_comment_lines() {
     const char c = text_[at_];
     if (c == ';' || (c == '%' && place_.column == 1)) {
       while (!at_end() && text_[at_] != '\n') take();
-    } else if (is_blank(c)) {
+    } else if (is_space(c)) {
       take();
     } else {
       return;

@@ -17,11 +17,10 @@
 namespace counterpart {
 namespace {
 
-constexpr const Rules& rules = international_rules;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t table_bytes = std::size_t{16} << 20;
-constexpr std::size_t longest_game_plies = 300;
+constexpr std::size_t arena_table_bytes = std::size_t{16} << 20;
+constexpr std::size_t longest_arena_game_plies = 300;
 
 class Contestant {
  public:
@@ -46,7 +45,8 @@ class Contestant {
                                                       "\"; use level:1 to level:8, trained, plain, material or " +
                                                       "weights:FILE.");
     }
-    contestant->searcher_ = std::make_unique<Searcher>(rules, plan.evaluation, table_bytes, contestant->weights_.get());
+    contestant->searcher_ =
+        std::make_unique<Searcher>(international_rules, plan.evaluation, arena_table_bytes, contestant->weights_.get());
     return contestant;
   }
 
@@ -62,7 +62,8 @@ class Contestant {
     const auto elapsed_s = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
     std::function<bool()> out_of_time;
     if (move_time_s_ > 0) out_of_time = [&] { return elapsed_s() >= move_time_s_; };
-    const Choice choice = choose(*searcher_, rules, record.position(), earlier, plan_, seed_, out_of_time);
+    const Choice choice =
+        choose(*searcher_, international_rules, record.position(), earlier, plan_, seed_, out_of_time);
     thought_s_ += elapsed_s();
     nodes_ += choice.nodes;
     return choice.best.move;
@@ -82,10 +83,10 @@ class Contestant {
 
 Record start_of(std::uint64_t seed, int plies) {
   Dice dice(seed);
-  Record record(rules, start_position(rules));
+  Record record(international_rules, start_position(international_rules));
   for (int i = 0; i < plies; ++i) {
     MoveList moves;
-    generate(rules, record.position(), moves);
+    generate(international_rules, record.position(), moves);
     if (moves.empty()) break;
     record.play(moves[dice.roll(moves.size())]);
   }
@@ -93,7 +94,7 @@ Record start_of(std::uint64_t seed, int plies) {
 }
 
 GameResult play(Record record, Contestant& light, Contestant& dark) {
-  while (record.moves().size() < longest_game_plies) {
+  while (record.moves().size() < longest_arena_game_plies) {
     if (const auto ending = record.ending()) return ending->result;
     record.play((record.position().turn == Side::light ? light : dark).move(record));
   }

@@ -109,7 +109,9 @@ class Regression {
         const auto& whole = model_->patterns[i][s];
         const auto& first = model_->first_halves[i][first_half(s)];
         const auto& second = model_->second_halves[i][second_half(s)];
-        const auto sum = [&](std::size_t stage) { return whole[stage].value + first[stage].value + second[stage].value; };
+        const auto sum = [&](std::size_t stage) {
+          return whole[stage].value + first[stage].value + second[stage].value;
+        };
         weights.patterns[i][s] = {weight(sum(0)), weight(sum(1))};
       }
     }

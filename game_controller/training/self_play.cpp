@@ -12,24 +12,23 @@
 namespace counterpart {
 namespace {
 
-constexpr const Rules& rules = international_rules;
-constexpr std::size_t table_bytes = std::size_t{1} << 20;
+constexpr std::size_t self_play_table_bytes = std::size_t{1} << 20;
 constexpr int surely_decided = win_value - 500;
-constexpr int longest_game_plies = 240;
+constexpr int longest_self_play_plies = 240;
 constexpr int unfair_start = man_value;
 constexpr int patience_with_kings_plies = 12;  // both sides have one: by then what can be won has been won
 
 bool can_capture_at_all(const Position& p) {
   Position swapped = p;
   swapped.turn = other(p.turn);
-  return can_capture(rules, p) || can_capture(rules, swapped);
+  return can_capture(international_rules, p) || can_capture(international_rules, swapped);
 }
 
 std::optional<Record> random_start(Dice& dice, int plies) {
-  Record record(rules, start_position(rules));
+  Record record(international_rules, start_position(international_rules));
   for (int i = 0; i < plies; ++i) {
     MoveList moves;
-    generate(rules, record.position(), moves);
+    generate(international_rules, record.position(), moves);
     if (moves.empty()) return std::nullopt;
     record.play(moves[dice.roll(moves.size())]);
   }
@@ -51,7 +50,7 @@ class Lecture {
     const std::size_t first = lessons_.size();
     float result = 0.5F;
     int with_kings = 0;
-    for (int ply = 0; ply < longest_game_plies; ++ply) {
+    for (int ply = 0; ply < longest_self_play_plies; ++ply) {
       if (const auto ending = record.ending()) {
         result = score(ending->result);
         break;
@@ -90,7 +89,7 @@ std::vector<Lesson> play_lessons(const SelfPlayOptions& options,
                                  const std::function<void(int, std::size_t)>& on_progress) {
   std::vector<Lesson> lessons;
   Dice dice(options.seed);
-  Searcher searcher(rules, options.evaluation, table_bytes, options.weights);
+  Searcher searcher(international_rules, options.evaluation, self_play_table_bytes, options.weights);
   for (int game = 0; game < options.games;) {
     const int fewest = options.random_plies / 2;
     const auto start = random_start(dice, fewest + dice.roll(options.random_plies - fewest + 1));

@@ -5,12 +5,12 @@
 namespace counterpart::mcap {
 namespace {
 
-constexpr CrcTables kTables = make_crc_tables(0xEDB88320);
+constexpr CrcTables kZipTables = make_crc_tables(0xEDB88320);
 
 }  // namespace
 
 std::uint32_t crc32(ByteView bytes, std::uint32_t crc) {
-  return crc_by_table(kTables, bytes, crc);
+  return crc_by_table(kZipTables, bytes, crc);
 }
 
 void append_text(Bytes& out, const std::string& text) {

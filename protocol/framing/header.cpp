@@ -7,7 +7,7 @@
 namespace counterpart {
 namespace {
 
-constexpr std::array<std::uint8_t, 4> kMagic{'V', 'H', 'P', '1'};
+constexpr std::array<std::uint8_t, 4> kHeaderMagic{'V', 'H', 'P', '1'};
 constexpr std::size_t kCrcAt = 12;
 constexpr std::size_t kAfterCrc = 16;
 
@@ -32,7 +32,7 @@ std::uint32_t max_length(std::uint16_t type) {
 
 HeaderBytes seal(Header header, ByteView body) {
   HeaderBytes out{};
-  std::memcpy(out.data(), kMagic.data(), kMagic.size());
+  std::memcpy(out.data(), kHeaderMagic.data(), kHeaderMagic.size());
   store(out.data() + 4, header.type);
   store(out.data() + 6, header.type_version);
   store(out.data() + 7, header.flags);
@@ -46,7 +46,7 @@ HeaderBytes seal(Header header, ByteView body) {
 }
 
 Result<Header> read_header(std::span<const std::uint8_t, kHeaderSize> bytes) {
-  if (std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0) {
+  if (std::memcmp(bytes.data(), kHeaderMagic.data(), kHeaderMagic.size()) != 0) {
     return failure(ErrorCode::bad_format, "a message does not begin with VHP1: the peer does not speak this protocol");
   }
   Header header;

@@ -8,15 +8,11 @@
 
 #include "protocol/session/hub.hpp"
 #include "protocol/transport/endpoint.hpp"
+#include "protocol/transport/monotonic_clock.hpp"
 #include "protocol/transport/outgoing.hpp"
 
 namespace counterpart {
 namespace {
-
-std::int64_t now() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 // Nothing ticks while neither program calls, so nobody may be declared dead for silence.
 LinkOptions without_deadlines(LinkOptions options) {
@@ -35,13 +31,13 @@ class MemoryPipe {
 
   // Moves bytes until nothing moves any more. Call with the mutex held.
   void pump() {
-    while (const auto lane = client_.wants_to_dial(now())) {
-      const auto accepted = server_.accepted(now());
+    while (const auto lane = client_.wants_to_dial(monotonic_ns())) {
+      const auto accepted = server_.accepted(monotonic_ns());
       if (!accepted) break;
-      wires_.push_back({*accepted, client_.dialled(*lane, now()), {}, {}});
+      wires_.push_back({*accepted, client_.dialled(*lane, monotonic_ns()), {}, {}});
     }
-    server_.tick(now());
-    client_.tick(now());
+    server_.tick(monotonic_ns());
+    client_.tick(monotonic_ns());
     bool moved = true;
     while (moved) {
       moved = false;
@@ -49,8 +45,8 @@ class MemoryPipe {
         moved |= carry(server_, wire.server, client_, wire.client, wire.to_client);
         moved |= carry(client_, wire.client, server_, wire.server, wire.to_server);
       }
-      if (const auto lane = client_.wants_to_dial(now())) {
-        wires_.push_back({*server_.accepted(now()), client_.dialled(*lane, now()), {}, {}});
+      if (const auto lane = client_.wants_to_dial(monotonic_ns())) {
+        wires_.push_back({*server_.accepted(monotonic_ns()), client_.dialled(*lane, monotonic_ns()), {}, {}});
         moved = true;
       }
     }
@@ -59,7 +55,7 @@ class MemoryPipe {
   }
 
   void leave(Hub& hub) {
-    hub.leave(now());
+    hub.leave(monotonic_ns());
     pump();
   }
 
@@ -78,7 +74,7 @@ class MemoryPipe {
   static bool carry(Hub& from, ConnectionId out, Hub& to, ConnectionId in, Bytes& pending) {
     bool moved = false;
     while (pending.size() < kMostPending) {
-      const auto message = from.next_to_write(out, now());
+      const auto message = from.next_to_write(out, monotonic_ns());
       if (!message) break;
       pending.insert(pending.end(), message->header.begin(), message->header.end());
       pending.insert(pending.end(), message->body->begin(), message->body->end());
@@ -89,7 +85,7 @@ class MemoryPipe {
       const auto room = to.parser(in).room();
       const std::size_t count = std::min(room.size(), pending.size() - done);
       std::memcpy(room.data(), pending.data() + done, count);
-      to.read(in, count, now());
+      to.read(in, count, monotonic_ns());
       done += count;
     }
     pending.erase(pending.begin(), pending.begin() + static_cast<std::ptrdiff_t>(done));
@@ -100,8 +96,8 @@ class MemoryPipe {
     const Error over{ErrorCode::closed, "the other end is gone"};
     for (Wire& wire : wires_) {
       if (!server_.finished(wire.server) && !client_.finished(wire.client)) continue;
-      server_.closed(wire.server, over, now());
-      client_.closed(wire.client, over, now());
+      server_.closed(wire.server, over, monotonic_ns());
+      client_.closed(wire.client, over, monotonic_ns());
     }
     wires_.erase(
         std::remove_if(wires_.begin(), wires_.end(), [&](const Wire& wire) { return !server_.exists(wire.server); }),
@@ -131,9 +127,9 @@ class MemoryEndpoint : public Endpoint {
     const auto outgoing = make_outgoing(message, options_.video_codec);
     const std::lock_guard lock(pipe_->mutex);
     if (outgoing) {
-      hub_.send(peer, *outgoing, now());
+      hub_.send(peer, *outgoing, monotonic_ns());
     } else {
-      hub_.report(peer, outgoing.error(), now());
+      hub_.report(peer, outgoing.error(), monotonic_ns());
     }
     pipe_->pump();
   }
@@ -142,9 +138,9 @@ class MemoryEndpoint : public Endpoint {
     const auto outgoing = make_outgoing(message, options_.video_codec);
     const std::lock_guard lock(pipe_->mutex);
     if (outgoing) {
-      hub_.broadcast(*outgoing, now());
+      hub_.broadcast(*outgoing, monotonic_ns());
     } else {
-      hub_.report(0, outgoing.error(), now());
+      hub_.report(0, outgoing.error(), monotonic_ns());
     }
     pipe_->pump();
   }
@@ -162,7 +158,7 @@ class MemoryEndpoint : public Endpoint {
 
   std::vector<PeerStats> stats() const override {
     const std::lock_guard lock(pipe_->mutex);
-    return hub_.stats(now());
+    return hub_.stats(monotonic_ns());
   }
 
   std::string address() const override { return name_; }

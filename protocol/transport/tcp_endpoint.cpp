@@ -9,6 +9,7 @@
 #include "protocol/session/hub.hpp"
 #include "protocol/transport/address.hpp"
 #include "protocol/transport/endpoint.hpp"
+#include "protocol/transport/monotonic_clock.hpp"
 #include "protocol/transport/outgoing.hpp"
 
 namespace counterpart {
@@ -23,11 +24,6 @@ constexpr auto kGoodbyeLimit = std::chrono::milliseconds(300);
 constexpr std::size_t kMostAtOnce = 32;  // messages in one write; two buffers each, and sendmsg takes 64
 constexpr std::size_t kMostBytesAtOnce = 256U << 10;
 constexpr int kMostReadsInARow = 64;
-
-std::int64_t now() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 bool would_block(const error_code& error) {
   return error == asio::error::would_block || error == asio::error::try_again;
@@ -75,7 +71,7 @@ class TcpEndpoint : public Endpoint {
       error_code ignored;
       acceptor_.close(ignored);
       resolver_.cancel();
-      hub_.leave(now());
+      hub_.leave(monotonic_ns());
       after_change();
       changed_.wait_for(lock, kGoodbyeLimit, [&] { return links_.empty(); });
     }
@@ -133,10 +129,10 @@ class TcpEndpoint : public Endpoint {
       const bool final_refusal =
           refusal && (refusal->code == ErrorCode::version_mismatch || refusal->code == ErrorCode::refused ||
                       refusal->code == ErrorCode::not_found);
-      return final_refusal || !hub_.stats(now()).empty();
+      return final_refusal || !hub_.stats(monotonic_ns()).empty();
     };
     changed_.wait_until(lock, deadline, settled);
-    if (!hub_.stats(now()).empty()) return std::nullopt;
+    if (!hub_.stats(monotonic_ns()).empty()) return std::nullopt;
     if (hub_.last_refusal()) return hub_.last_refusal();
     return Error{ErrorCode::timeout, to_text(address_) + " did not answer in time"};
   }
@@ -145,7 +141,7 @@ class TcpEndpoint : public Endpoint {
     auto outgoing = make_outgoing(message, options_.video_codec);
     const std::lock_guard lock(mutex_);
     if (!outgoing) return refuse(peer, outgoing.error());
-    hub_.send(peer, *outgoing, now());
+    hub_.send(peer, *outgoing, monotonic_ns());
     after_change();
   }
 
@@ -153,7 +149,7 @@ class TcpEndpoint : public Endpoint {
     auto outgoing = make_outgoing(message, options_.video_codec);
     const std::lock_guard lock(mutex_);
     if (!outgoing) return refuse(0, outgoing.error());
-    hub_.broadcast(*outgoing, now());
+    hub_.broadcast(*outgoing, monotonic_ns());
     after_change();
   }
 
@@ -169,14 +165,14 @@ class TcpEndpoint : public Endpoint {
 
   std::vector<PeerStats> stats() const override {
     const std::lock_guard lock(mutex_);
-    return hub_.stats(now());
+    return hub_.stats(monotonic_ns());
   }
 
   std::string address() const override { return to_text(address_); }
 
  private:
   void refuse(PeerId peer, const Error& error) {
-    hub_.report(peer, error, now());
+    hub_.report(peer, error, monotonic_ns());
     changed_.notify_all();
   }
 
@@ -201,11 +197,11 @@ class TcpEndpoint : public Endpoint {
   }
 
   void welcome(tcp::socket socket) {
-    if (const auto id = hub_.accepted(now())) {
+    if (const auto id = hub_.accepted(monotonic_ns())) {
       add_link(std::move(socket), *id);
       return;
     }
-    const WireMessage refusal = hub_.refusal(now());
+    const WireMessage refusal = hub_.refusal(monotonic_ns());
     error_code ignored;
     socket.non_blocking(true, ignored);
     const std::array<asio::const_buffer, 2> buffers{asio::buffer(refusal.header), asio::buffer(*refusal.body)};
@@ -234,9 +230,9 @@ class TcpEndpoint : public Endpoint {
       attempt->done = true;
       attempt->limit.cancel();
       if (error) {
-        hub_.dial_failed(lane, network_error(error, to_text(address_)), now());
+        hub_.dial_failed(lane, network_error(error, to_text(address_)), monotonic_ns());
       } else {
-        add_link(std::move(attempt->socket), hub_.dialled(lane, now()));
+        add_link(std::move(attempt->socket), hub_.dialled(lane, monotonic_ns()));
       }
       after_change();
     };
@@ -264,7 +260,7 @@ class TcpEndpoint : public Endpoint {
   // Whatever happened: write what can be written, read what may be read, close what is over, set the alarm clock.
   void after_change() {
     if (!leaving_) {
-      while (const auto lane = hub_.wants_to_dial(now())) dial(*lane);
+      while (const auto lane = hub_.wants_to_dial(monotonic_ns())) dial(*lane);
     }
     for (const auto& link : std::vector<std::shared_ptr<Link>>(all_links())) {
       flush(link);
@@ -286,7 +282,7 @@ class TcpEndpoint : public Endpoint {
   }
 
   void set_alarm() {
-    const std::int64_t next = hub_.next_tick(now());
+    const std::int64_t next = hub_.next_tick(monotonic_ns());
     if (alarm_set_ && alarm_ns_ <= next) return;
     alarm_set_ = true;
     alarm_ns_ = next;
@@ -295,9 +291,9 @@ class TcpEndpoint : public Endpoint {
       if (cancelled) return;
       const std::lock_guard lock(mutex_);
       alarm_set_ = false;
-      hub_.tick(now());
+      hub_.tick(monotonic_ns());
       if (recorder_ != nullptr) {
-        if (const auto error = recorder_->take_error()) hub_.report(0, *error, now());
+        if (const auto error = recorder_->take_error()) hub_.report(0, *error, monotonic_ns());
       }
       after_change();
     });
@@ -323,7 +319,7 @@ class TcpEndpoint : public Endpoint {
       const auto room = hub_.parser(link->id).room();
       error_code error;
       const std::size_t count = link->socket.read_some(asio::buffer(room.data(), room.size()), error);
-      if (count > 0) hub_.read(link->id, count, now());
+      if (count > 0) hub_.read(link->id, count, monotonic_ns());
       if (would_block(error)) return;
       if (error) return break_link(link, error);
       if (count < room.size()) return;  // the socket is empty
@@ -345,7 +341,7 @@ class TcpEndpoint : public Endpoint {
     link.writing.clear();
     std::size_t bytes = 0;
     while (link.writing.size() < kMostAtOnce && bytes < kMostBytesAtOnce) {
-      auto message = hub_.next_to_write(link.id, now());
+      auto message = hub_.next_to_write(link.id, monotonic_ns());
       if (!message) break;
       bytes += kHeaderSize + message->body->size();
       link.writing.push_back(std::move(*message));
@@ -381,7 +377,7 @@ class TcpEndpoint : public Endpoint {
   // Closes a link that is broken or has said all, and forgets it once no handler holds it any more.
   void reap(const std::shared_ptr<Link>& link) {
     const bool flushed = link->buffers.empty() && !link->waiting_to_write;
-    const bool over = link->broken || (hub_.finished(link->id) && flushed) || hub_.overdue(link->id, now());
+    const bool over = link->broken || (hub_.finished(link->id) && flushed) || hub_.overdue(link->id, monotonic_ns());
     if (!over) return;
     if (!link->broken) link->broken = asio::error::eof;
     error_code ignored;
@@ -390,7 +386,7 @@ class TcpEndpoint : public Endpoint {
       link->socket.close(ignored);
     }
     if (link->waiting_to_read || link->waiting_to_write) return;
-    hub_.closed(link->id, network_error(link->broken, to_text(address_)), now());
+    hub_.closed(link->id, network_error(link->broken, to_text(address_)), monotonic_ns());
     links_.erase(link->id);
   }
 

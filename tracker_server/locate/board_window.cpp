@@ -10,9 +10,9 @@
 namespace counterpart {
 namespace {
 
-constexpr float unseen = -1e9F;
+constexpr float outside_picture = -1e9F;
 
-// Grey level at a lattice point; `unseen` outside the picture or behind the camera.
+// Grey level at a lattice point; `outside_picture` outside the picture or behind the camera.
 class LatticeSampler {
  public:
   LatticeSampler(const cv::Mat1b& grey, const Eigen::Matrix3d& H, double centre_u, double centre_v)
@@ -22,9 +22,9 @@ class LatticeSampler {
 
   float operator()(double u, double v) const {
     const Eigen::Vector3d h = H_ * Eigen::Vector3d(u, v, 1);
-    if (!(h.z() > 0)) return unseen;
+    if (!(h.z() > 0)) return outside_picture;
     const double x = h.x() / h.z(), y = h.y() / h.z();
-    if (!(x >= 0 && y >= 0 && x < grey_.cols - 1 && y < grey_.rows - 1)) return unseen;
+    if (!(x >= 0 && y >= 0 && x < grey_.cols - 1 && y < grey_.rows - 1)) return outside_picture;
     const int column = static_cast<int>(x), row = static_cast<int>(y);
     const float fx = static_cast<float>(x - column), fy = static_cast<float>(y - row);
     const std::uint8_t* p = grey_.ptr(row) + column;
@@ -48,7 +48,7 @@ float edge_step(const LatticeSampler& sample, int u, int v, bool along_v) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     const float after = along_v ? sample(u + aside, v + places[i]) : sample(u + places[i], v + aside);
     const float before = along_v ? sample(u - aside, v + places[i]) : sample(u + places[i], v - aside);
-    if (after == unseen || before == unseen) return unseen;
+    if (after == outside_picture || before == outside_picture) return outside_picture;
     steps[i] = after - before;
   }
   std::sort(steps.begin(), steps.end());
@@ -71,8 +71,8 @@ class Steps {
       }
   }
   bool inside(int u, int v) const { return u >= u0_ && v >= v0_ && u < u0_ + columns_ && v < v0_ + rows_; }
-  float left(int u, int v) const { return inside(u, v) ? left_[index(u, v)] : unseen; }
-  float top(int u, int v) const { return inside(u, v) ? top_[index(u, v)] : unseen; }
+  float left(int u, int v) const { return inside(u, v) ? left_[index(u, v)] : outside_picture; }
+  float top(int u, int v) const { return inside(u, v) ? top_[index(u, v)] : outside_picture; }
 
  private:
   std::size_t index(int u, int v) const { return static_cast<std::size_t>((v - v0_) * columns_ + u - u0_); }
@@ -89,7 +89,7 @@ struct Evidence {
 struct Measure {
   float typical;  // signed: positive if the lattice's (0, 0) is light
   void add(Evidence& evidence, float step) const {
-    if (step == unseen) return;
+    if (step == outside_picture) return;
     evidence.sum += std::clamp(step / typical, -1.0F, 1.0F);
     ++evidence.count;
   }
@@ -140,7 +140,7 @@ float typical_step(const Steps& steps, int u0, int u1, int v0, int v1) {
   for (int v = v0; v < v1; ++v)
     for (int u = u0; u < u1; ++u)
       for (float step : {steps.left(u, v), steps.top(u, v)})
-        if (step != unseen) {
+        if (step != outside_picture) {
           seen.push_back(std::abs(step));
           sum += step;
         }
@@ -169,7 +169,7 @@ std::optional<BoardWindow> find_board_window(const cv::Mat1b& grey, const Eigen:
       // One corner may lie outside the picture: the lines that lead to it still tell where.
       int corners_seen = 0;
       for (int du : {0, n})
-        for (int dv : {0, n}) corners_seen += sample(u + du, v + dv) != unseen;
+        for (int dv : {0, n}) corners_seen += sample(u + du, v + dv) != outside_picture;
       if (corners_seen < 3) continue;
       const BoardWindow window = measure(steps, m, n, u, v);
       const double value = worth(window, n);

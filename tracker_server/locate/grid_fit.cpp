@@ -3,11 +3,11 @@
 #include <cmath>
 #include <vector>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
 #include "tracker_server/edges/edge_search.hpp"
 #include "tracker_server/locate/lattice.hpp"
+#include "tracker_server/pose/normal_equations.hpp"
 
 namespace counterpart {
 namespace {
@@ -109,7 +109,7 @@ GridFit fit_grid(const Pyramid& pyramid, const Matrix3d& start, int n, bool firs
       }
       if (used < 20) return result;
       A.diagonal().array() += 1e-9 * A.trace();
-      const Eigen::Matrix<double, 8, 1> step = A.ldlt().solve(b);
+      const Eigen::Matrix<double, 8, 1> step = solve_normal(A, b);
       if (!step.allFinite()) return result;
       G.row(0) += step.segment<3>(0).transpose();
       G.row(1) += step.segment<3>(3).transpose();

@@ -5,8 +5,9 @@
 #include <map>
 #include <numbers>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+
+#include "tracker_server/pose/normal_equations.hpp"
 
 namespace counterpart {
 namespace {
@@ -190,8 +191,7 @@ Matrix3d fit_homography(const std::vector<Vector2d>& from, const std::vector<Vec
     b << 0, 0, 0, p, -q.y() * p;
     normal += a * a.transpose() + b * b.transpose();
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(normal);
-  const Eigen::Matrix<double, 9, 1> h = solver.eigenvectors().col(0);
+  const Eigen::Matrix<double, 9, 1> h = weakest_direction(normal);
   Matrix3d H;
   H << h(0), h(1), h(2), h(3), h(4), h(5), h(6), h(7), h(8);
   H = (B.inverse() * H * A).eval();

@@ -19,13 +19,13 @@ using Eigen::Vector2d;
 
 // What a window must show to be called a board. Pieces and hands cost support, hence so much below 1; look-alikes one
 // square along lose a whole side, and parts of larger patterns go on beyond.
-constexpr double least_support = 0.5;
+constexpr double least_window_support = 0.5;
 constexpr double least_side = 0.25;
 constexpr double most_beyond = 0.45;
 constexpr double least_margin = 0.2;
 
 bool convincing(const BoardWindow& window) {
-  return window.support >= least_support && window.weakest_side >= least_side && window.beyond <= most_beyond &&
+  return window.support >= least_window_support && window.weakest_side >= least_side && window.beyond <= most_beyond &&
          window.contrast >= 6;
 }
 
@@ -79,7 +79,7 @@ std::optional<LocatedBoard> locate_at(const cv::Mat1b& grey, const Pyramid& full
       v1 = std::max(v1, p.v);
     }
     const auto window = find_board_window(grey, lattice.H, n, u0, u1, v0, v1);
-    if (!window || window->support < 0.8 * least_support) continue;
+    if (!window || window->support < 0.8 * least_window_support) continue;
     const Matrix3d start = scaled_up(from_corner(lattice.H, window->u, window->v), factor);
     const GridFit fit = fit_grid(full, start, n, window->first_light);
     // Looked at again with the exact grid: over the whole neighbourhood, since the outermost rows decide.

@@ -10,24 +10,25 @@
 namespace counterpart {
 namespace {
 
-constexpr int step = 2;           // pixels, of the second differences
-constexpr float ring_radius = 5;  // pixels
+constexpr int difference_step = 2;  // pixels, of the second differences
+constexpr float ring_radius = 5;    // pixels
 constexpr int ring_samples = 32;
 constexpr int margin = 8;
-constexpr float pi = std::numbers::pi_v<float>;
+constexpr float half_turn = std::numbers::pi_v<float>;
 
 // Minus the determinant of the Hessian: large where the surface is a saddle.
 cv::Mat1f saddle_response(const cv::Mat1f& smooth) {
   cv::Mat1f response(smooth.size(), 0.0F);
   for (int y = margin; y < smooth.rows - margin; ++y) {
-    const float* above = smooth.ptr<float>(y - step);
+    const float* above = smooth.ptr<float>(y - difference_step);
     const float* here = smooth.ptr<float>(y);
-    const float* below = smooth.ptr<float>(y + step);
+    const float* below = smooth.ptr<float>(y + difference_step);
     float* out = response.ptr<float>(y);
     for (int x = margin; x < smooth.cols - margin; ++x) {
-      const float xx = here[x - step] + here[x + step] - 2 * here[x];
+      const float xx = here[x - difference_step] + here[x + difference_step] - 2 * here[x];
       const float yy = above[x] + below[x] - 2 * here[x];
-      const float xy = 0.25F * (above[x - step] + below[x + step] - above[x + step] - below[x - step]);
+      const float xy = 0.25F * (above[x - difference_step] + below[x + difference_step] - above[x + difference_step] -
+                                below[x - difference_step]);
       out[x] = xy * xy - xx * yy;
     }
   }
@@ -44,7 +45,7 @@ float bilinear(const cv::Mat1f& picture, float x, float y) {
 
 // The stationary point of the quadratic surface round (x, y); false if it lies elsewhere.
 bool refine(const cv::Mat1f& smooth, int x, int y, cv::Point2f& p) {
-  const auto at = [&](int dx, int dy) { return smooth(y + dy * step, x + dx * step); };
+  const auto at = [&](int dx, int dy) { return smooth(y + dy * difference_step, x + dx * difference_step); };
   const float gx = 0.5F * (at(1, 0) - at(-1, 0)), gy = 0.5F * (at(0, 1) - at(0, -1));
   const float xx = at(1, 0) + at(-1, 0) - 2 * at(0, 0), yy = at(0, 1) + at(0, -1) - 2 * at(0, 0);
   const float xy = 0.25F * (at(1, 1) + at(-1, -1) - at(1, -1) - at(-1, 1));
@@ -52,7 +53,7 @@ bool refine(const cv::Mat1f& smooth, int x, int y, cv::Point2f& p) {
   if (!(det < 0)) return false;
   const float dx = -(yy * gx - xy * gy) / det, dy = -(xx * gy - xy * gx) / det;
   if (std::abs(dx) > 1 || std::abs(dy) > 1) return false;
-  p = {static_cast<float>(x) + dx * step, static_cast<float>(y) + dy * step};
+  p = {static_cast<float>(x) + dx * difference_step, static_cast<float>(y) + dy * difference_step};
   return true;
 }
 
@@ -61,7 +62,7 @@ bool read_ring(const cv::Mat1f& smooth, Saddle& saddle, float min_strength) {
   std::array<float, ring_samples> ring;
   float mean = 0;
   for (int i = 0; i < ring_samples; ++i) {
-    const float angle = 2 * pi * static_cast<float>(i) / ring_samples;
+    const float angle = 2 * half_turn * static_cast<float>(i) / ring_samples;
     ring[static_cast<std::size_t>(i)] =
         bilinear(smooth, saddle.p.x + ring_radius * std::cos(angle), saddle.p.y + ring_radius * std::sin(angle));
   }
@@ -78,30 +79,30 @@ bool read_ring(const cv::Mat1f& smooth, Saddle& saddle, float min_strength) {
     if ((a < 0) == (b < 0)) continue;
     if (changes == 4) return false;
     const auto slot = static_cast<std::size_t>(changes++);
-    rising_or_falling[slot] = 2 * pi * (static_cast<float>(i) + a / (a - b)) / ring_samples;
+    rising_or_falling[slot] = 2 * half_turn * (static_cast<float>(i) + a / (a - b)) / ring_samples;
     rising[slot] = b >= 0;
   }
   if (changes != 4) return false;
 
   // Opposite transitions lie on one straight edge; 0.6 rad leaves room for perspective and for a piece close by.
   const auto straight = [&](std::size_t i) {
-    return std::abs(rising_or_falling[i + 2] - rising_or_falling[i] - pi) < 0.6F;
+    return std::abs(rising_or_falling[i + 2] - rising_or_falling[i] - half_turn) < 0.6F;
   };
   if (!straight(0) || !straight(1)) return false;
   const auto mean_direction = [&](std::size_t i) {
-    return std::fmod(0.5F * (rising_or_falling[i] + rising_or_falling[i + 2] - pi) + 2 * pi, pi);
+    return std::fmod(0.5F * (rising_or_falling[i] + rising_or_falling[i + 2] - half_turn) + 2 * half_turn, half_turn);
   };
   const std::size_t into_light = rising[0] ? 0 : 1;
   saddle.edge[0] = mean_direction(into_light);
   saddle.edge[1] = mean_direction(1 - into_light);
-  const float between = std::fmod(saddle.edge[1] - saddle.edge[0] + 2 * pi, pi);
-  if (between < 0.25F || between > pi - 0.25F) return false;
+  const float between = std::fmod(saddle.edge[1] - saddle.edge[0] + 2 * half_turn, half_turn);
+  if (between < 0.25F || between > half_turn - 0.25F) return false;
 
   // The weaker of the two contrasts across the centre, so that an edge with a spot beside it does not pass.
   float light = 255, dark = 0;
   for (int sector = 0; sector < 2; ++sector) {
-    const float light_axis = saddle.edge[0] + 0.5F * between + static_cast<float>(sector) * pi;
-    const float dark_axis = light_axis + 0.5F * pi;
+    const float light_axis = saddle.edge[0] + 0.5F * between + static_cast<float>(sector) * half_turn;
+    const float dark_axis = light_axis + 0.5F * half_turn;
     const auto look = [&](float angle) {
       return bilinear(smooth, saddle.p.x + ring_radius * std::cos(angle), saddle.p.y + ring_radius * std::sin(angle));
     };

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "tracker_server/locate/lattice.hpp"
+#include "tracker_server/pose/normal_equations.hpp"
 #include "tracker_server/pose/plane_pose.hpp"
 #include "tracker_server/pose/projection.hpp"
 
@@ -188,7 +189,7 @@ void BoardTracker::accept(const Attempt& attempt, std::int64_t time_ns) {
     // What this picture alone says of the focal length once the pose is free to follow.
     const Eigen::Matrix<double, 6, 6> P = attempt.fit.information.topLeftCorner<6, 6>();
     const Eigen::Matrix<double, 6, 1> c = attempt.fit.information.col(6).head<6>();
-    const double own = attempt.fit.information(6, 6) - c.dot(P.ldlt().solve(c));
+    const double own = attempt.fit.information(6, 6) - c.dot(Eigen::Matrix<double, 6, 1>(solve_normal(P, c)));
     focal_.log_focal = std::log(camera_.fx);
     focal_.information = focal_memory * focal_.information + focal_trust * std::max(0.0, own);
   }

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-
+#include "tracker_server/pose/normal_equations.hpp"
 #include "tracker_server/pose/projection.hpp"
 
 namespace counterpart {
@@ -118,7 +117,7 @@ bool improve(const std::vector<EdgeSample>& samples, const FitRound& round, doub
   const Vector7 scaling = normal.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
   Matrix7 scaled = scaling.asDiagonal() * normal * scaling.asDiagonal();
   scaled.diagonal().array() += 1e-9;
-  const Vector7 step = scaling.asDiagonal() * scaled.ldlt().solve(scaling.asDiagonal() * right);
+  const Vector7 step = scaling.cwiseProduct(Vector7(solve_normal(scaled, Vector7(scaling.cwiseProduct(right)))));
   if (!step.allFinite()) return false;
   fit.X_CM = moved(fit.X_CM, step.head<3>(), step.segment<3>(3));
   if (focal.estimate) {

@@ -4,11 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include "tracker_server/pose/fit.hpp"
+#include "tracker_server/pose/normal_equations.hpp"
 #include "tracker_server/pose/projection.hpp"
 
 namespace counterpart {
@@ -48,19 +47,18 @@ Isometry3d decompose(const std::vector<Crossing>& points, const Intrinsics& came
     b << 0, 0, 0, m, -q.y() * m;
     normal += a * a.transpose() + b * b.transpose();
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(normal, Eigen::ComputeFullV);
-  const Eigen::Matrix<double, 9, 1> h = svd.matrixV().col(8);
+  const Eigen::Matrix<double, 9, 1> h = weakest_direction(normal);
   Matrix3d G;
   G << h(0) / size, h(1) / size, h(2), h(3) / size, h(4) / size, h(5), h(6) / size, h(7) / size, h(8);
   G /= 0.5 * (G.col(0).norm() + G.col(1).norm());
   if (G(2, 2) < 0) G = -G;
-  Matrix3d R;
-  R << G.col(0), G.col(1), G.col(0).cross(G.col(1));
-  const Eigen::JacobiSVD<Matrix3d> rotation(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Matrix3d sign = Matrix3d::Identity();
-  sign(2, 2) = (rotation.matrixU() * rotation.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  // The two axes turned apart or together by the same angle until they are at right angles.
+  const Vector3d along = (G.col(0).normalized() + G.col(1).normalized()).normalized();
+  const Vector3d across = (G.col(0).normalized() - G.col(1).normalized()).normalized();
   Isometry3d X = Isometry3d::Identity();
-  X.linear() = rotation.matrixU() * sign * rotation.matrixV().transpose();
+  X.linear().col(0) = std::sqrt(0.5) * (along + across);
+  X.linear().col(1) = std::sqrt(0.5) * (along - across);
+  X.linear().col(2) = X.linear().col(0).cross(X.linear().col(1));
   X.translation() = G.col(2);
   return X;
 }
@@ -88,7 +86,7 @@ double refine(const std::vector<Crossing>& points, const Intrinsics& camera, Iso
     }
     rms = std::sqrt(squares / static_cast<double>(points.size()));
     A.diagonal() *= 1 + 1e-9;
-    const Eigen::Matrix<double, 6, 1> step = A.ldlt().solve(b);
+    const Eigen::Matrix<double, 6, 1> step = solve_normal(A, b);
     if (!step.allFinite()) return std::numeric_limits<double>::max();
     X = moved(X, step.head<3>(), step.tail<3>());
     if (step.norm() < 1e-10) break;

@@ -14,7 +14,7 @@ struct Row {
   const char* vroid;
 };
 
-constexpr std::array<Row, 13> middle{{
+constexpr std::array<Row, 13> trunk_rows{{
     {"HumanoidRoot", "root", "Hips", "Hips"},
     {"vl5", "spine05", "", ""},
     {"vl2", "spine04", "Spine", "Spine"},
@@ -74,7 +74,7 @@ std::unordered_map<std::string, std::string> all_names() {
   const auto put = [&](const std::string& source, const std::string& hanim) {
     if (!source.empty()) names.emplace(source, hanim);
   };
-  for (const Row& row : middle) {
+  for (const Row& row : trunk_rows) {
     put(row.makehuman, row.hanim);
     put(row.mixamo, row.hanim);
     if (*row.vroid != '\0') put(std::string("J_Bip_C_") + row.vroid, row.hanim);

@@ -3,16 +3,13 @@
 #include <cmath>
 
 #include "vhd_renderer/motion/idle.hpp"
+#include "vhd_renderer/motion/pose.hpp"
 
 namespace counterpart {
 namespace {
 
 using Eigen::Quaternionf;
 using Eigen::Vector3f;
-
-std::size_t at(int j) {
-  return static_cast<std::size_t>(j);
-}
 
 bool has_morph(const Figure& figure, const std::string& name) {
   for (const FigurePart& part : figure.parts) {

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "vhd_renderer/motion/director_state.hpp"
+#include "vhd_renderer/motion/pose.hpp"
 
 namespace counterpart {
 namespace {
@@ -12,10 +13,6 @@ namespace {
 using Eigen::AngleAxisf;
 using Eigen::Isometry3f;
 using Eigen::Vector3f;
-
-std::size_t at(int j) {
-  return static_cast<std::size_t>(j);
-}
 
 }  // namespace
 

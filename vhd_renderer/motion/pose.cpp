@@ -5,10 +5,6 @@
 namespace counterpart {
 namespace {
 
-std::size_t at(int i) {
-  return static_cast<std::size_t>(i);
-}
-
 void update_joint(const Figure& figure, BodyPose& pose, std::size_t j) {
   const int parent = figure.joints[j].parent;
   if (parent < 0) {

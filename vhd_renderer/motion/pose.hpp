@@ -2,6 +2,7 @@
 // written in the axes of H at bind, so that "identity" is the bind pose for every rig.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -19,6 +20,11 @@ struct BodyPose {
   std::vector<Eigen::Quaternionf> G;     // bind directions in H to directions in S
   std::vector<Eigen::Vector3f> p_S;
 };
+
+// A joint's place in the vectors of a figure or a pose; joints count from 0, and -1 means none.
+inline std::size_t at(int joint) {
+  return static_cast<std::size_t>(joint);
+}
 
 BodyPose bind_pose(const Figure& figure);
 

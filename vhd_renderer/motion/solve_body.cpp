@@ -3,6 +3,7 @@
 #include "vhd_renderer/motion/body_controls.hpp"
 #include "vhd_renderer/motion/curves.hpp"
 #include "vhd_renderer/motion/limb.hpp"
+#include "vhd_renderer/motion/pose.hpp"
 
 namespace counterpart {
 namespace {
@@ -10,10 +11,6 @@ namespace {
 using Eigen::AngleAxisf;
 using Eigen::Quaternionf;
 using Eigen::Vector3f;
-
-std::size_t at(int j) {
-  return static_cast<std::size_t>(j);
-}
 
 // The largest lean with which a seated person reaches: a share of each goes with `lean` from 0 to 1.
 constexpr float lean_pelvis = radians(24);
