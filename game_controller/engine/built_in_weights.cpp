@@ -11,7 +11,7 @@ __asm__(
     ".incbin \"" COUNTERPART_TRAINED_WEIGHTS
     "\"\n"
     "counterpart_trained_weights_end:\n"
-    ".if counterpart_trained_weights_end - counterpart_trained_weights - 209980\n"
+    ".if counterpart_trained_weights_end - counterpart_trained_weights - 341200\n"
     ".error \"trained.weights has the wrong size; make it again with: draughts train\"\n"
     ".endif\n"
     ".text\n");
@@ -20,7 +20,7 @@ extern "C" const counterpart::PatternWeights counterpart_trained_weights;
 
 namespace counterpart {
 
-static_assert(sizeof(PatternWeights) == 209'980, "the size above");
+static_assert(sizeof(PatternWeights) == 341'200, "the size above");
 static_assert(std::endian::native == std::endian::little, "the file is little-endian");
 
 const PatternWeights& built_in_weights() {

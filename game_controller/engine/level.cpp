@@ -13,11 +13,11 @@ constexpr std::array<LevelPlan, highest_level> plans{{
     {Evaluation::material, 1, 0, 60},
     {Evaluation::material, 2, 0, 30},
     {Evaluation::plain, 3, 0, 12},
-    {Evaluation::plain, 5, 20'000, 0},
-    {Evaluation::trained, 7, 60'000, 0},
-    {Evaluation::trained, 9, 150'000, 0},
-    {Evaluation::trained, 12, 500'000, 0},
-    {Evaluation::trained, 60, 1'500'000, 0},
+    {Evaluation::plain, 4, 0, 0},
+    {Evaluation::trained, 60, 4'000, 0},
+    {Evaluation::trained, 60, 20'000, 0},
+    {Evaluation::trained, 60, 120'000, 0},
+    {Evaluation::trained, 60, 1'000'000, 0},
 }};
 
 }  // namespace
@@ -45,7 +45,7 @@ Choice choose(Searcher& searcher, const Rules& rules, const Position& position,
   limits.nodes = plan.nodes;
   limits.give_up = give_up;
   const SearchReport report = searcher.search(position, earlier, limits);
-  return {{report.line.front(), report.value}, report.line};
+  return {{report.line.front(), report.value}, report.line, report.nodes};
 }
 
 double acted_thinking_s(const Rules& rules, const Position& position) {

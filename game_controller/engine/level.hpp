@@ -24,6 +24,7 @@ LevelPlan plan_of_level(int level);
 struct Choice {
   ScoredMove best;
   std::vector<Move> line;
+  std::uint64_t nodes = 0;
 };
 
 // The move that a player of this level makes here; the same for the same seed and position. There must be a legal move.

@@ -11,7 +11,6 @@ using Board10 = Layout<10>;
 
 constexpr int row_pairs = 5;
 constexpr int columns = 4;
-constexpr int pair_states = 81;  // two rows by two squares
 
 // From four bits of light men and four of dark men to a number in base three.
 struct PairTables {
@@ -85,7 +84,9 @@ PatternView view_patterns(const Position& p) {
       if (r == 2) middle_turned[static_cast<std::size_t>(c)] = pair_tables.turned[both];
     }
   }
-  const auto state = [](int first, int second) { return static_cast<std::uint16_t>(first * pair_states + second); };
+  const auto state = [](int first, int second) {
+    return static_cast<std::uint16_t>(first * half_pattern_states + second);
+  };
   for (std::size_t c = 0; c < columns; ++c) {
     const std::size_t d = columns - 1 - c;  // the same column with the board turned round
     view.states[c] = state(pair[0][c], pair[1][c]);
@@ -93,6 +94,17 @@ PatternView view_patterns(const Position& p) {
     view.states[pattern_count + c] = state(pair[4][d], pair[3][d]);
     view.states[pattern_count + columns + c] = state(pair[3][d], middle_turned[d]);
   }
+  constexpr std::size_t first_wide = 2 * columns;
+  for (std::size_t r = 0; r < 2; ++r) {
+    for (std::size_t c = 0; c < 2; ++c) {
+      const std::size_t block = first_wide + 2 * r + c;
+      view.states[block] = state(pair[r][c], pair[r][c + 2]);
+      view.states[pattern_count + block] = state(pair[4 - r][3 - c], pair[4 - r][1 - c]);
+    }
+  }
+  constexpr std::size_t middle_wide = pattern_count - 1;  // turned round, the left middle block is the right one
+  view.states[middle_wide] = state(pair[2][0], pair[2][2]);
+  view.states[pattern_count + middle_wide] = state(middle_turned[3], middle_turned[1]);
 
   const Bits light_kings = p.light & p.kings;
   const Bits dark_kings = p.dark & p.kings;

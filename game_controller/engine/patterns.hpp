@@ -1,7 +1,8 @@
-// A trained evaluation for the 10x10 board: how men stand together in blocks of four rows by two squares, after Scan 2
-// (F. Letouzey), who showed how much such patterns tell. Sixteen overlapping blocks cover the board; turning the board
-// round and swapping colours makes two blocks one, so eight sets of weights serve all and the evaluation has no
-// favourite side. What a pattern is worth changes as the board empties: two weights, mixed by the number of pieces.
+// A trained evaluation for the 10x10 board: how men stand together in blocks of eight squares, after Scan 2
+// (F. Letouzey), who showed how much such patterns tell. Sixteen tall blocks (four rows by two squares) and ten wide
+// ones (two rows by four squares) overlap and cover the board; turning the board round and swapping colours makes two
+// blocks one, so thirteen sets of weights serve all and the evaluation has no favourite side. What a pattern is worth
+// changes as the board empties: two weights, mixed by the number of pieces.
 #pragma once
 
 #include <array>
@@ -11,10 +12,11 @@
 
 namespace counterpart {
 
-inline constexpr int pattern_count = 8;
-inline constexpr int pattern_states = 6561;  // eight squares, each empty, light man or dark man
-inline constexpr int full_stage = 40;        // pieces on the board
-inline constexpr int weight_unit = 8;        // weights are in eighths of a hundredth of a man
+inline constexpr int pattern_count = 13;
+inline constexpr int half_pattern_states = 81;  // four squares (two by two), each empty, light man or dark man
+inline constexpr int pattern_states = half_pattern_states * half_pattern_states;
+inline constexpr int full_stage = 40;  // pieces on the board
+inline constexpr int weight_unit = 8;  // weights are in eighths of a hundredth of a man
 
 // What patterns of men do not tell; each counted for light minus for dark.
 enum Extra {
@@ -38,7 +40,8 @@ struct PatternWeights {
   std::array<StagedWeight, extra_count> extras;
 };
 
-// What the evaluation sees of a position. Blocks 0-7 count for light, 8-15 (the same, from dark's side) against it.
+// What the evaluation sees of a position. The first half of the blocks counts for light, the second (the same blocks,
+// from dark's side) against it. A state is that of the block's first four squares times 81 plus that of the others.
 struct PatternView {
   std::array<std::uint16_t, 2 * pattern_count> states;
   std::array<std::int8_t, extra_count> extras;

@@ -17,7 +17,9 @@ namespace {
 constexpr int max_ply = 120;
 constexpr int infinite = win_value + 1;
 constexpr int surely_won = win_value - 2 * max_ply;
-constexpr int max_quiet_plies_in_threats = 6;  // how far the resting search follows threats without captures
+// How far the resting search follows threats without captures. One ply beats two 59 to 41 and six 76 to 24 at equal
+// nodes (4,000 a move): the nodes are better spent on depth.
+constexpr int max_quiet_plies_in_threats = 1;
 
 struct GivenUp {};  // thrown through the recursion when a limit is reached
 
@@ -172,8 +174,9 @@ struct Searcher::State {
   }
 
   int reduction(const Move& move, int depth, int index, bool in_line) const {
-    if (depth < 3 || index < 3 || move.captured != 0) return 0;
-    return index >= 6 && !in_line ? 2 : 1;
+    if (depth < 2 || index < 1 || move.captured != 0) return 0;
+    if (in_line) return depth >= 3 && index >= 3 ? 1 : 0;
+    return index < 4 ? 1 : std::max(2, depth / 3);
   }
 
   int search(const Position& p, int depth, int alpha, int beta, int ply, Line& line) {

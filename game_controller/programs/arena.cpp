@@ -1,5 +1,7 @@
 #include "game_controller/programs/arena.hpp"
 
+#include <chrono>
+#include <functional>
 #include <memory>
 #include <ostream>
 
@@ -15,17 +17,22 @@
 namespace counterpart {
 namespace {
 
-constexpr std::size_t arena_table_bytes = std::size_t{4} << 20;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t arena_table_bytes = std::size_t{16} << 20;
 constexpr std::size_t longest_arena_game_plies = 300;
 
 class Contestant {
  public:
-  static Result<std::unique_ptr<Contestant>> make(const std::string& name, std::uint64_t nodes) {
+  static Result<std::unique_ptr<Contestant>> make(const std::string& name, const ArenaOptions& options) {
     auto contestant = std::make_unique<Contestant>();
+    const std::uint64_t nodes = options.move_time_s > 0 ? 0 : options.nodes;
+    contestant->move_time_s_ = options.move_time_s;
     LevelPlan& plan = contestant->plan_;
     const auto evaluation = find_evaluation(name);
     if (name.size() == 7 && name.rfind("level:", 0) == 0 && name[6] >= '1' && name[6] <= '8') {
       plan = plan_of_level(name[6] - '0');
+      contestant->move_time_s_ = 0;
     } else if (evaluation) {
       plan = {*evaluation, 60, nodes, 0};
     } else if (name.rfind("weights:", 0) == 0) {
@@ -51,14 +58,27 @@ class Contestant {
   Move move(const Record& record) {
     std::vector<std::uint64_t> earlier = record.keys();
     earlier.pop_back();
-    return choose(*searcher_, international_rules, record.position(), earlier, plan_, seed_).best.move;
+    const auto start = Clock::now();
+    const auto elapsed_s = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+    std::function<bool()> out_of_time;
+    if (move_time_s_ > 0) out_of_time = [&] { return elapsed_s() >= move_time_s_; };
+    const Choice choice =
+        choose(*searcher_, international_rules, record.position(), earlier, plan_, seed_, out_of_time);
+    thought_s_ += elapsed_s();
+    nodes_ += choice.nodes;
+    return choice.best.move;
   }
+
+  double nodes_a_second() const { return thought_s_ > 0 ? static_cast<double>(nodes_) / thought_s_ : 0; }
 
  private:
   LevelPlan plan_;
   std::unique_ptr<PatternWeights> weights_;
   std::unique_ptr<Searcher> searcher_;
   std::uint64_t seed_ = 1;
+  double move_time_s_ = 0;  // 0: no limit but the plan's
+  double thought_s_ = 0;
+  std::uint64_t nodes_ = 0;
 };
 
 Record start_of(std::uint64_t seed, int plies) {
@@ -84,9 +104,9 @@ GameResult play(Record record, Contestant& light, Contestant& dark) {
 }  // namespace
 
 Result<void> run_arena(const ArenaOptions& options, std::ostream& out, std::ostream& log) {
-  auto a = Contestant::make(options.a, options.nodes);
+  auto a = Contestant::make(options.a, options);
   if (!a) return tl::make_unexpected(a.error());
-  auto b = Contestant::make(options.b, options.nodes);
+  auto b = Contestant::make(options.b, options);
   if (!b) return tl::make_unexpected(b.error());
   int wins = 0;
   int draws = 0;
@@ -115,7 +135,20 @@ Result<void> run_arena(const ArenaOptions& options, std::ostream& out, std::ostr
   report["draws"] = draws;
   report["losses"] = losses;
   report["score"] = options.games == 0 ? 0.5 : (wins + 0.5 * draws) / options.games;
-  out << report.dump() << "\n";
+  if (options.move_time_s > 0) report["move_time_s"] = options.move_time_s;
+  report["a_nodes_a_second"] = static_cast<std::uint64_t>((*a)->nodes_a_second());
+  report["b_nodes_a_second"] = static_cast<std::uint64_t>((*b)->nodes_a_second());
+  out << report.dump() << std::endl;
+  return {};
+}
+
+Result<void> run_ladder(const ArenaOptions& options, std::ostream& out, std::ostream& log) {
+  for (int level = lowest_level + 1; level <= highest_level; ++level) {
+    ArenaOptions pair = options;
+    pair.a = "level:" + std::to_string(level);
+    pair.b = "level:" + std::to_string(level - 1);
+    if (auto played = run_arena(pair, out, log); !played) return played;
+  }
   return {};
 }
 

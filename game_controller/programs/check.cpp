@@ -77,7 +77,8 @@ Result<bool> check_positions(const Rules& rules, const std::string& file, double
   if (!text) return tl::make_unexpected(text.error());
   try {
     bool all = true;
-    for (const json& entry : json::parse(*text).at("positions")) {
+    const json known = json::parse(*text);  // named: a loop over a member of a temporary would run over what is gone
+    for (const json& entry : known.at("positions")) {
       const auto fen = entry.at("fen").get<std::string>();
       const auto position = read_fen(rules, fen);
       if (!position) return tl::make_unexpected(position.error());

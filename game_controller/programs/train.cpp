@@ -32,7 +32,6 @@ Result<void> train(const TrainOptions& options, std::ostream& log) {
         log << "round " << round + 1 << ": " << games << " games, " << count << " positions" << std::endl;
       }
     });
-    if (round == 1 && options.start.empty()) lessons.clear();  // what the plain evaluation had to say was a beginning
     const int games_before = lessons.empty() ? 0 : lessons.back().game + 1;
     for (Lesson& lesson : fresh) lesson.game += games_before;
     lessons.insert(lessons.end(), fresh.begin(), fresh.end());

@@ -13,9 +13,9 @@ namespace counterpart {
 struct TrainOptions {
   std::string start;  // weights to go on from; empty: none, the first round is played with the plain evaluation
   std::string out;    // file for the weights; written after each round
-  std::vector<int> games{3000, 10000};  // of each round; each is played with the weights learnt before it
-  int depth = 3;
-  int epochs = 12;
+  std::vector<int> games{6000, 8000};  // of each round; each is played with the weights learnt before it
+  int depth = 4;
+  int epochs = 4;
   std::uint64_t seed = 1;
 };
 

@@ -16,12 +16,15 @@ constexpr float logits_a_man = 1.2F;  // how surely a man more wins in these gam
 
 struct Knob {
   float value = 0;
-  float seen = 1e-4F;  // sum of squared gradients
+  float seen = 10;  // sum of squared gradients; so much at first that one sight of a rare pattern teaches little
 };
 
-// The regression's own weights: two knobs where the evaluation has one staged weight.
+// The regression's own weights: two knobs where the evaluation has one staged weight. What halves of a block are worth
+// is learnt too and added to the whole in the end: a pattern that was hardly ever seen is judged by its halves.
 struct Model {
   std::array<std::array<std::array<Knob, 2>, pattern_states>, pattern_count> patterns;
+  std::array<std::array<std::array<Knob, 2>, half_pattern_states>, pattern_count> first_halves;
+  std::array<std::array<std::array<Knob, 2>, half_pattern_states>, pattern_count> second_halves;
   std::array<std::array<Knob, 2>, extra_count> extras;
 };
 
@@ -33,6 +36,14 @@ float logistic_loss(float predicted, float target) {
   constexpr float tiny = 1e-6F;
   const float p = std::clamp(predicted, tiny, 1 - tiny);
   return -(target * std::log(p) + (1 - target) * std::log(1 - p));
+}
+
+constexpr std::size_t first_half(std::size_t state) {
+  return state / half_pattern_states;
+}
+
+constexpr std::size_t second_half(std::size_t state) {
+  return state % half_pattern_states;
 }
 
 class Regression {
@@ -59,8 +70,11 @@ class Regression {
       return full * knobs[0].value + (1 - full) * knobs[1].value;
     };
     for (std::size_t i = 0; i < pattern_count; ++i) {
-      sum += mixed_value(model_->patterns[i][view.states[i]]);
-      sum -= mixed_value(model_->patterns[i][view.states[pattern_count + i]]);
+      const auto block_value = [&](std::size_t state) {
+        return mixed_value(model_->patterns[i][state]) + mixed_value(model_->first_halves[i][first_half(state)]) +
+               mixed_value(model_->second_halves[i][second_half(state)]);
+      };
+      sum += block_value(view.states[i]) - block_value(view.states[pattern_count + i]);
     }
     for (std::size_t i = 0; i < extra_count; ++i) {
       sum += mixed_value(model_->extras[i]) * static_cast<float>(view.extras[i]);
@@ -70,8 +84,13 @@ class Regression {
 
   void learn(const PatternView& view, float error) {
     for (std::size_t i = 0; i < pattern_count; ++i) {
-      turn(model_->patterns[i][view.states[i]], view, error);
-      turn(model_->patterns[i][view.states[pattern_count + i]], view, -error);
+      const auto turn_block = [&](std::size_t state, float share_of_error) {
+        turn(model_->patterns[i][state], view, share_of_error);
+        turn(model_->first_halves[i][first_half(state)], view, share_of_error);
+        turn(model_->second_halves[i][second_half(state)], view, share_of_error);
+      };
+      turn_block(view.states[i], error);
+      turn_block(view.states[pattern_count + i], -error);
     }
     for (std::size_t i = 0; i < extra_count; ++i) {
       if (view.extras[i] != 0) turn(model_->extras[i], view, error * static_cast<float>(view.extras[i]));
@@ -81,18 +100,23 @@ class Regression {
   PatternWeights rounded() const {
     const auto& men = model_->extras[extra_men];
     const float scale = man_value * weight_unit / std::max((men[0].value + men[1].value) / 2, 0.1F);
-    const auto weight = [&](const Knob& knob) {
-      return static_cast<std::int16_t>(std::lround(std::clamp(knob.value * scale, -32000.0F, 32000.0F)));
+    const auto weight = [&](float value) {
+      return static_cast<std::int16_t>(std::lround(std::clamp(value * scale, -32000.0F, 32000.0F)));
     };
     PatternWeights weights;
     for (std::size_t i = 0; i < pattern_count; ++i) {
       for (std::size_t s = 0; s < pattern_states; ++s) {
-        const auto& knobs = model_->patterns[i][s];
-        weights.patterns[i][s] = {weight(knobs[0]), weight(knobs[1])};
+        const auto& whole = model_->patterns[i][s];
+        const auto& first = model_->first_halves[i][first_half(s)];
+        const auto& second = model_->second_halves[i][second_half(s)];
+        const auto sum = [&](std::size_t stage) {
+          return whole[stage].value + first[stage].value + second[stage].value;
+        };
+        weights.patterns[i][s] = {weight(sum(0)), weight(sum(1))};
       }
     }
     for (std::size_t i = 0; i < extra_count; ++i) {
-      weights.extras[i] = {weight(model_->extras[i][0]), weight(model_->extras[i][1])};
+      weights.extras[i] = {weight(model_->extras[i][0].value), weight(model_->extras[i][1].value)};
     }
     return weights;
   }

@@ -11,8 +11,8 @@
 namespace counterpart {
 
 struct FitOptions {
-  int epochs = 12;
-  double trust_in_search = 0.3;  // share of the search's value in what is learnt; the rest is the result of the game
+  int epochs = 4;
+  double trust_in_search = 0.75;  // share of the search's value in what is learnt; the rest is the result of the game
   double step = 0.05;
   double shrink = 2e-5;    // pull towards 0 at each visit: rare patterns stay small
   int held_back = 20;      // every so many games one is not learnt but only predicted, to see what was understood

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t self_play_table_bytes = std::size_t{1} << 20;
 constexpr int surely_decided = win_value - 500;
 constexpr int longest_self_play_plies = 240;
-constexpr int unfair_start = 2 * man_value;
+constexpr int unfair_start = man_value;
 constexpr int patience_with_kings_plies = 12;  // both sides have one: by then what can be won has been won
 
 bool can_capture_at_all(const Position& p) {
@@ -91,7 +91,8 @@ std::vector<Lesson> play_lessons(const SelfPlayOptions& options,
   Dice dice(options.seed);
   Searcher searcher(international_rules, options.evaluation, self_play_table_bytes, options.weights);
   for (int game = 0; game < options.games;) {
-    const auto start = random_start(dice, options.random_plies);
+    const int fewest = options.random_plies / 2;
+    const auto start = random_start(dice, fewest + dice.roll(options.random_plies - fewest + 1));
     if (!start) continue;
     searcher.clear();
     if (!Lecture(searcher, options.depth, lessons).play(*start, game)) continue;

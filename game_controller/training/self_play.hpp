@@ -21,7 +21,7 @@ struct Lesson {
 struct SelfPlayOptions {
   int games = 1000;
   int depth = 3;
-  int random_plies = 10;  // at the start of each game, so that no two are alike
+  int random_plies = 10;  // half as many to so many start each game, so that no two are alike
   std::uint64_t seed = 1;
   Evaluation evaluation = Evaluation::plain;
   const PatternWeights* weights = nullptr;  // of the trained evaluation; nullptr: the built-in ones
