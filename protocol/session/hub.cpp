@@ -163,7 +163,9 @@ void Hub::detach(ConnectionId id, Connection& connection, const Error& why, std:
   connection.peer = 0;
   const bool main = connection.lane == LaneName::main;
   if (end_ == End::client) {
-    try_again_later(main ? main_dial_ : video_dial_, now_ns);
+    Dial& dial = main ? main_dial_ : video_dial_;
+    if (was_open) dial.began_ns = now_ns;  // a session ended, not an attempt: whoever says goodbye is not back at once
+    try_again_later(dial, now_ns);
     if (main && !was_open) note_refusal(why);
   }
   if (peer == nullptr) return;
