@@ -1,16 +1,15 @@
 #!/bin/sh
 # Builds both images with buildah, on a base made by debootstrap where no registry can be reached, and starts each
 # program once. Needs: buildah, debootstrap, root (or a user with sub-ids).
-#   docker/build.sh [DEBIAN-MIRROR]
+#   docker/build.sh [DEBIAN-MIRROR]      without one: the one that debootstrap knows
 set -eu
 cd "$(dirname "$0")/.."
-mirror=${1:-http://deb.debian.org/debian}
 run="buildah --storage-driver vfs"
 base=docker.io/library/debian:bookworm-slim
 if ! $run inspect --type image "$base" >/dev/null 2>&1; then
   root=$(mktemp -d)
   trap 'rm -rf "$root"' EXIT
-  debootstrap --variant=minbase bookworm "$root" "$mirror"
+  debootstrap --variant=minbase bookworm "$root" ${1:+"$1"}
   container=$($run from scratch)
   $run add "$container" "$root" / >/dev/null
   $run commit "$container" "$base" >/dev/null

@@ -15,6 +15,8 @@ import subprocess
 import sys
 import time
 
+from truth import corners, degrees_between, pose_in, quantile, read_truth, rms_px
+
 
 def say(text):
     print(f"demo: {text}", file=sys.stderr, flush=True)
@@ -115,28 +117,15 @@ def watch(cast, tracker, out, options):
                 tracker.wait(60)
 
 
-def rotate(q, v):
-    w, x, y, z = q
-    t = (2 * (y * v[2] - z * v[1]), 2 * (z * v[0] - x * v[2]), 2 * (x * v[1] - y * v[0]))
-    return (v[0] + w * t[0] + y * t[2] - z * t[1],
-            v[1] + w * t[1] + z * t[0] - x * t[2],
-            v[2] + w * t[2] + x * t[1] - y * t[0])
-
-
 def summary(values):
     if not values:
         return None
-    ordered = sorted(values)
-    return {"median": statistics.median(ordered), "p95": ordered[int(0.95 * (len(ordered) - 1))], "max": ordered[-1]}
+    return {"median": statistics.median(values), "p95": quantile(values, 0.95), "max": max(values)}
 
 
 def pose_error(poses_file, truth_file):
     """The tracker's poses against the stage's truth: millimetres, degrees, and pixels at the board's corners."""
-    truth = {}
-    with open(truth_file) as lines:
-        for line in lines:
-            entry = json.loads(line)
-            truth[entry["frame"]] = entry
+    truth = {entry["frame"]: entry for entry in read_truth(truth_file)}
     mm, degrees, pixels, lost, compared = [], [], [], 0, 0
     with open(poses_file) as table:
         for row in csv.DictReader(table):
@@ -147,22 +136,11 @@ def pose_error(poses_file, truth_file):
             if row["status"] == "lost":
                 lost += 1
                 continue
-            X, K, board = entry["X_CB"], entry["intrinsics"], entry["board"]
-            p = [float(row[k]) for k in ("tx", "ty", "tz")]
-            q = [float(row[k]) for k in ("qw", "qx", "qy", "qz")]
-            mm.append(1000 * math.dist(p, X["p"]))
-            dot = min(1.0, abs(sum(a * b for a, b in zip(q, X["q"]))))
-            degrees.append(math.degrees(2 * math.acos(dot)))
-            half = board["squares"] * board["square_size_m"] / 2
-            square = 0.0
-            for cx, cy in ((-half, half), (half, half), (half, -half), (-half, -half)):
-                ends = []
-                for qq, pp in ((q, p), (X["q"], X["p"])):
-                    r = rotate(qq, (cx, cy, 0.0))
-                    z = r[2] + pp[2]
-                    ends.append((K["fx"] * (r[0] + pp[0]) / z, K["fy"] * (r[1] + pp[1]) / z))
-                square += (ends[0][0] - ends[1][0]) ** 2 + (ends[0][1] - ends[1][1]) ** 2
-            pixels.append(math.sqrt(square / 4))
+            true, told = entry["X_CB"], pose_in(row)
+            mm.append(1000 * math.dist(told["p"], true["p"]))
+            degrees.append(degrees_between(told["q"], true["q"]))
+            camera, board = entry["intrinsics"], entry["board"]
+            pixels.append(rms_px(corners(camera, told, board), corners(camera, true, board)))
     return {"frames_compared": compared, "lost": lost, "mm": summary(mm), "deg": summary(degrees), "corner_px_rms": summary(pixels)}
 
 

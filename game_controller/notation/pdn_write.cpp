@@ -4,59 +4,18 @@
 
 #include "game_controller/notation/fen.hpp"
 #include "game_controller/notation/move_text.hpp"
+#include "protocol/codec/pdn_text.hpp"
 
 namespace counterpart {
 namespace {
 
-constexpr std::size_t line_width = 79;
-
-std::string tag(const std::string& name, const std::string& value) {
-  std::string text = "[" + name + " \"";
-  for (const char c : value) {
-    if (c == '"' || c == '\\') text += '\\';
-    text += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-  }
-  return text + "\"]\n";
-}
-
-class Lines {
- public:
-  void word(std::string word) {
-    if (word.front() == '%' && (column_ == 0 || column_ + 1 + word.size() > line_width)) {
-      word.insert(0, " ");  // in the first column it would be a comment line
-    }
-    if (column_ > 0 && column_ + 1 + word.size() > line_width) {
-      text_ += '\n';
-      column_ = 0;
-    } else if (column_ > 0) {
-      text_ += ' ';
-      ++column_;
-    }
-    text_ += word;
-    column_ += word.size();
-  }
-  void words(const std::string& text) {
-    std::size_t at = 0;
-    while (at < text.size()) {
-      const std::size_t end = std::min(text.find(' ', at), text.size());
-      if (end > at) word(text.substr(at, end - at));
-      at = end + 1;
-    }
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-  std::size_t column_ = 0;
-};
-
-void write_remark(const PdnRemark& remark, Lines& lines) {
+void write_remark(const PdnRemark& remark, PdnLines& lines) {
   lines.words(remark.kind == RemarkKind::comment ? "{" + remark.text + "}" : remark.text);
 }
 
 std::string move_section(const Record& record, const std::vector<PdnRemark>& remarks, GameResult result) {
   const Rules& rules = record.rules();
-  Lines lines;
+  PdnLines lines;
   auto remark = remarks.begin();
   bool numbered = false;  // the next move needs its number: it is the first one, or something was said before it
   // The first side to move in these rules has the odd plies, so a start with the other side begins with "1...".
@@ -82,26 +41,12 @@ std::string move_section(const Record& record, const std::vector<PdnRemark>& rem
 
 }  // namespace
 
-std::string pdn_result(GameResult result) {
-  switch (result) {
-    case GameResult::light_wins:
-      return "2-0";
-    case GameResult::dark_wins:
-      return "0-2";
-    case GameResult::draw:
-      return "1-1";
-    case GameResult::open:
-      break;
-  }
-  return "*";
-}
-
 std::string write_pdn(const PdnTags& tags, const Record& record, GameResult result) {
   const Rules& rules = record.rules();
-  std::string text = tag("Event", tags.event) + tag("Site", tags.site) + tag("Date", tags.date) +
-                     tag("Round", tags.round) + tag("White", tags.light) + tag("Black", tags.dark) +
-                     tag("Result", pdn_result(result)) + tag("GameType", std::string(rules.game_type));
-  if (!(record.start() == start_position(rules))) text += tag("FEN", write_fen(rules, record.start()));
+  std::string text = pdn_tag("Event", tags.event) + pdn_tag("Site", tags.site) + pdn_tag("Date", tags.date) +
+                     pdn_tag("Round", tags.round) + pdn_tag("White", tags.light) + pdn_tag("Black", tags.dark) +
+                     pdn_tag("Result", pdn_result(result)) + pdn_tag("GameType", std::string(rules.game_type));
+  if (!(record.start() == start_position(rules))) text += pdn_tag("FEN", write_fen(rules, record.start()));
   return text + "\n" + move_section(record, {}, result);
 }
 
@@ -111,14 +56,14 @@ std::string write_pdn(const PdnGame& game) {
   std::string text;
   for (const std::string_view name : roster) {
     const std::string value = game.tag(name);
-    text += tag(std::string(name), value.empty() ? (name == "Date" ? "????.??.??" : "?") : value);
+    text += pdn_tag(std::string(name), value.empty() ? (name == "Date" ? "????.??.??" : "?") : value);
   }
-  text += tag("Result", pdn_result(game.result)) + tag("GameType", std::string(rules.game_type));
-  if (!(game.record.start() == start_position(rules))) text += tag("FEN", write_fen(rules, game.record.start()));
+  text += pdn_tag("Result", pdn_result(game.result)) + pdn_tag("GameType", std::string(rules.game_type));
+  if (!(game.record.start() == start_position(rules))) text += pdn_tag("FEN", write_fen(rules, game.record.start()));
   for (const auto& [name, value] : game.tags) {
     const bool written = std::find(std::begin(roster), std::end(roster), name) != std::end(roster) ||
                          name == "Result" || name == "GameType" || name == "FEN";
-    if (!written) text += tag(name, value);
+    if (!written) text += pdn_tag(name, value);
   }
   return text + "\n" + move_section(game.record, game.remarks, game.result);
 }

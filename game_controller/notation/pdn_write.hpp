@@ -19,9 +19,6 @@ struct PdnTags {
   std::string dark = "?";
 };
 
-// Result as the game stands: "2-0", "0-2", "1-1" or "*".
-std::string pdn_result(GameResult result);
-
 // Lines of at most 79 characters. A start other than the usual one is written as FEN tag.
 std::string write_pdn(const PdnTags& tags, const Record& record, GameResult result);
 

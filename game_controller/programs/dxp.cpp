@@ -17,6 +17,7 @@
 #include "game_controller/notation/fen.hpp"
 #include "game_controller/notation/pdn_write.hpp"
 #include "game_controller/rules/generate.hpp"
+#include "protocol/codec/pdn_text.hpp"
 #include "protocol/daemon/stop_signal.hpp"
 
 namespace counterpart {

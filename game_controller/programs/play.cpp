@@ -12,6 +12,7 @@
 #include "game_controller/referee/judge.hpp"
 #include "game_controller/rules/generate.hpp"
 #include "game_controller/rules/record.hpp"
+#include "protocol/codec/pdn_text.hpp"
 #include "protocol/vocabulary/board_geometry.hpp"
 
 namespace counterpart {

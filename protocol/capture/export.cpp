@@ -2,11 +2,13 @@
 
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <ostream>
 
 #include <nlohmann/json.hpp>
 
 #include "protocol/codec/names.hpp"
+#include "protocol/codec/pdn_text.hpp"
 
 namespace counterpart {
 namespace {
@@ -21,7 +23,7 @@ Matrix3 rotation(const std::array<double, 4>& q) {
 }
 
 constexpr double degrees(double radians) {
-  return radians * 180 / 3.14159265358979323846;
+  return radians * 180 / std::numbers::pi;
 }
 
 // Column k of R_BC, the camera's axes seen from the board.
@@ -59,46 +61,23 @@ std::string game_type(const BoardState& board) {
   return board.rules == "english" ? "21" : "20";
 }
 
-std::string result_of(const BoardState& board) {
-  switch (board.result) {
-    case GameResult::light_wins:
-      return "2-0";
-    case GameResult::dark_wins:
-      return "0-2";
-    case GameResult::draw:
-      return "1-1";
-    default:
-      return "*";
-  }
-}
-
 void write_game(const BoardState& board, std::uint64_t round, std::ostream& out) {
   const bool virtual_is_light = board.virtual_side == Side::light;
-  out << "[Event \"Counterpart\"]\n[Round \"" << round << "\"]\n[White \"" << (virtual_is_light ? "virtual" : "real")
-      << " player\"]\n[Black \"" << (virtual_is_light ? "real" : "virtual") << " player\"]\n[Result \""
-      << result_of(board) << "\"]\n[GameType \"" << game_type(board) << "\"]\n";
-  bool dark_begins = false;
-  if (!board.start_fen.empty()) {
-    out << "[FEN \"" << board.start_fen << "\"]\n";
-    dark_begins = board.start_fen[0] == 'B';
-  }
-  out << '\n';
-  std::string line;
-  const auto put = [&](const std::string& word) {
-    if (line.size() + word.size() + 1 > 79) {
-      out << line << '\n';
-      line.clear();
-    }
-    line += (line.empty() ? "" : " ") + word;
-  };
+  const std::string light = virtual_is_light ? "virtual player" : "real player";
+  const std::string dark = virtual_is_light ? "real player" : "virtual player";
+  out << pdn_tag("Event", "Counterpart") << pdn_tag("Round", std::to_string(round)) << pdn_tag("White", light)
+      << pdn_tag("Black", dark) << pdn_tag("Result", pdn_result(board.result)) << pdn_tag("GameType", game_type(board));
+  const bool dark_begins = !board.start_fen.empty() && board.start_fen[0] == 'B';
+  if (!board.start_fen.empty()) out << pdn_tag("FEN", board.start_fen);
+  PdnLines lines;
   for (std::size_t i = 0; i < board.moves.size(); ++i) {
     const std::size_t ply = i + (dark_begins ? 1 : 0);
-    if (ply % 2 == 0) put(std::to_string(ply / 2 + 1) + ".");
-    if (i == 0 && dark_begins) put("1...");
-    put(board.moves[i]);
+    if (ply % 2 == 0) lines.word(std::to_string(ply / 2 + 1) + ".");
+    if (i == 0 && dark_begins) lines.word("1...");
+    lines.word(board.moves[i]);
   }
-  put(result_of(board));
-  out << line << "\n\n";
+  lines.word(pdn_result(board.result));
+  out << '\n' << lines.text() << "\n\n";
 }
 
 }  // namespace

@@ -52,6 +52,12 @@ Result<std::vector<Point3>> read_path(const Request& arguments) {
   throw CLI::ValidationError("send", error.message);
 }
 
+template <class T>
+T accepted(Result<T> result) {
+  if (!result) reject(result.error());
+  return *std::move(result);
+}
+
 template <class E>
 E word(const std::string& name) {
   const auto value = from_name<E>(name);
@@ -72,9 +78,7 @@ CLI::App* verb(CLI::App& send, const char* name, const char* what, const Shared&
 
 void add_grasp(CLI::App& send, const Shared& a) {
   CLI::App* command = verb(send, "grasp", "Take a piece along a path of places", a, [](Request& args) {
-    auto path = read_path(args);
-    if (!path) reject(path.error());
-    args.grasp.path_B = *path;
+    args.grasp.path_B = accepted(read_path(args));
     args.grasp.hand = word<Hand>(args.hand);
     if (args.grasp.piece == "-") args.grasp.piece.clear();
     args.command.action = args.grasp;
@@ -101,9 +105,7 @@ void add_keyframe(CLI::App& send, const Shared& a) {
 
 void add_navigate(CLI::App& send, const Shared& a) {
   CLI::App* command = verb(send, "navigate", "Walk somewhere", a, [](Request& args) {
-    auto path = read_path(args);
-    if (!path) reject(path.error());
-    args.navigate.path_B = *path;
+    args.navigate.path_B = accepted(read_path(args));
     args.command.action = args.navigate;
   });
   command->add_option("place", a->navigate.place, "entrance, chair, seat or away");
@@ -117,9 +119,7 @@ void add_gaze(CLI::App& send, const Shared& a) {
     args.gaze.target = word<GazeTarget>(args.target);
     if (args.gaze.target == GazeTarget::piece) args.gaze.piece = args.what;
     if (args.gaze.target == GazeTarget::square || args.gaze.target == GazeTarget::point) {
-      auto point = read_point(args.what, args.board);
-      if (!point) reject(point.error());
-      args.gaze.point_B = *point;
+      args.gaze.point_B = accepted(read_point(args.what, args.board));
       if (args.gaze.target == GazeTarget::square) args.gaze.square = std::atoi(args.what.c_str());
     }
     args.command.action = args.gaze;
@@ -144,11 +144,8 @@ void add_others(CLI::App& send, const Shared& a) {
   CLI::App* stop = verb(send, "stop", "Stop commands", a, [](Request& args) { args.command.action = args.stop; });
   stop->add_option("ids", a->stop.commands, "Ids of the commands; none: everything");
 
-  CLI::App* raw = verb(send, "json", "A command as docs/protocol.md writes it", a, [](Request& args) {
-    auto command = from_json_text<Command>(args.raw);
-    if (!command) reject(command.error());
-    args.command = *command;
-  });
+  CLI::App* raw = verb(send, "json", "A command as docs/protocol.md writes it", a,
+                       [](Request& args) { args.command = accepted(from_json_text<Command>(args.raw)); });
   raw->add_option("command", a->raw, R"({"id":1,"verb":"say","text":"hello"})")->required();
 
   CLI::App* control = verb(send, "control", "Ask something of the game", a, [](Request& args) {

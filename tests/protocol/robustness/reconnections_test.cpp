@@ -11,21 +11,17 @@
 #include "protocol/transport/endpoint.hpp"
 #include "tests/protocol/robustness/footprint.hpp"
 #include "tests/protocol/robustness/scale.hpp"
+#include "tests/support/link_options.hpp"
 #include "tests/support/relay.hpp"
 
 namespace counterpart {
 namespace {
 
+using testing_support::options_of;
+
 using Clock = std::chrono::steady_clock;
 
 constexpr std::int64_t kTick = 20'000'000;
-
-LinkOptions options_for(Role role) {
-  LinkOptions options;
-  options.role = role;
-  options.software = "test";
-  return options;
-}
 
 template <class T>
 bool holds(const std::vector<Inbound>& all) {
@@ -45,9 +41,9 @@ double seconds_until(Endpoint& endpoint) {
 
 struct Linked {
   Linked()
-      : tracker(*listen_tcp("127.0.0.1:0", options_for(Role::tracker))),
+      : tracker(*listen_tcp("127.0.0.1:0", options_of(Role::tracker))),
         relay(parse_address(tracker->address())->port),
-        renderer(*connect_tcp(relay.address(), options_for(Role::renderer))) {
+        renderer(*connect_tcp(relay.address(), options_of(Role::renderer))) {
     seconds_until<PeerJoined>(*renderer);
     seconds_until<PeerJoined>(*tracker);
   }

@@ -10,19 +10,15 @@
 #include "protocol/transport/address.hpp"
 #include "protocol/transport/endpoint.hpp"
 #include "protocol/transport/jpeg.hpp"
+#include "tests/support/link_options.hpp"
 #include "tests/support/relay.hpp"
 
 namespace counterpart {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
+using testing_support::options_of;
 
-LinkOptions options_of(Role role) {
-  LinkOptions options;
-  options.role = role;
-  options.software = "test";
-  return options;
-}
+constexpr std::int64_t kSecond = 1'000'000'000;
 
 // Collects what comes until the condition holds or ten seconds have passed.
 std::vector<Inbound> collect(Endpoint& endpoint, const std::function<bool(const std::vector<Inbound>&)>& enough) {

@@ -10,23 +10,18 @@
 #include "protocol/codec/codec.hpp"
 #include "protocol/transport/endpoint.hpp"
 #include "tests/protocol/samples.hpp"
+#include "tests/support/link_options.hpp"
 #include "tests/support/program.hpp"
 
 namespace counterpart {
 namespace {
 
+using testing_support::options_of;
 using testing_support::Outcome;
 using testing_support::run;
 using testing_support::TemporaryFolder;
 
 constexpr std::int64_t kSecond = 1'000'000'000;
-
-LinkOptions options_of(Role role) {
-  LinkOptions options;
-  options.role = role;
-  options.software = "test";
-  return options;
-}
 
 std::string write_file(const std::string& path, const std::string& text) {
   std::ofstream(path) << text;

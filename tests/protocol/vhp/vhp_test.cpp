@@ -10,9 +10,12 @@
 #include <sys/wait.h>
 
 #include "protocol/transport/endpoint.hpp"
+#include "tests/support/link_options.hpp"
 
 namespace counterpart {
 namespace {
+
+using testing_support::options_of;
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 
@@ -31,13 +34,6 @@ Ran vhp(const std::string& arguments) {
   const int status = pclose(pipe);
   ran.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return ran;
-}
-
-LinkOptions options_of(Role role) {
-  LinkOptions options;
-  options.role = role;
-  options.software = "test";
-  return options;
 }
 
 // Answers every command the way a renderer does, until one was finished or failed.

@@ -99,28 +99,37 @@ TEST(Player, SetsUpWhatIsMissing) {
   EXPECT_EQ(occupancy_of(world), std::string(20, 'b') + std::string(30, 'e'));
 }
 
+// In front of 19 and 20, with 28, 29 and 30 free behind it.
+BoardState with_light_on_24() {
+  BoardState state = start_state(GamePhase::real_to_move, Side::dark);
+  state.squares[24 - 1] = 'w';
+  return state;
+}
+
 TEST(Player, CapturesBecauseHeMust) {
   World world = starting_world({});
   Player player({});
-  BoardState state = start_state(GamePhase::real_to_move, Side::dark);
-  state.squares[24 - 1] = 'w';  // in front of 19 and 20, with 28, 29 and 30 free behind it
-  player.see(state);
+  player.see(with_light_on_24());
   wait(player, world, 4);
   const std::string after = occupancy_of(world);
   EXPECT_EQ(after.substr(25, 5).find('b') != std::string::npos, true) << after;
 }
 
-// 24 stands so that 19 or 20 would take it by a move of two rows.
-TEST(Player, AMoveTooFarIsNoCapture) {
+// How the dark pieces stand when his first move, an illegal one, is made.
+std::string after_first_move(const BoardState& state, IllegalKind kind, double wait_s) {
   PlayerOptions options;
-  options.illegal_moves = {{1, IllegalKind::too_far}};
+  options.illegal_moves = {{1, kind}};
   World world = starting_world({});
   Player player(options);
-  BoardState state = start_state(GamePhase::real_to_move, Side::dark);
-  state.squares[24 - 1] = 'w';
   player.see(state);
-  wait(player, world, 3);
-  const std::string after = occupancy_of(world);
+  wait(player, world, wait_s);
+  return occupancy_of(world);
+}
+
+// 24 stands so that 19 or 20 would take it by a move of two rows.
+TEST(Player, AMoveTooFarIsNoCapture) {
+  const BoardState state = with_light_on_24();
+  const std::string after = after_first_move(state, IllegalKind::too_far, 3);
   for (const PlayerMove& move : legal_moves("international", state.squares, Side::dark)) {
     std::string legal = start_state(GamePhase::real_to_move, Side::dark).squares.substr(0, 20) + std::string(30, 'e');
     legal[static_cast<std::size_t>(move.path.front() - 1)] = 'e';
@@ -131,15 +140,7 @@ TEST(Player, AMoveTooFarIsNoCapture) {
 }
 
 TEST(Player, MovesTheWrongPieceWhenACaptureIsDue) {
-  PlayerOptions options;
-  options.illegal_moves = {{1, IllegalKind::wrong_piece}};
-  World world = starting_world({});
-  Player player(options);
-  BoardState state = start_state(GamePhase::real_to_move, Side::dark);
-  state.squares[24 - 1] = 'w';
-  player.see(state);
-  wait(player, world, 4);
-  const std::string after = occupancy_of(world);
+  const std::string after = after_first_move(with_light_on_24(), IllegalKind::wrong_piece, 4);
   EXPECT_EQ(std::count(after.begin(), after.end(), 'b'), 20);
   EXPECT_NE(after.substr(20, 5), "eeeee") << after;
   EXPECT_EQ(after.substr(25), std::string(25, 'e')) << "nobody has jumped: " << after;
