@@ -45,6 +45,13 @@ Result<std::optional<Frame>> PictureFolder::next() {
   frame.image_bgr = cv::imread(path.string(), cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
   if (frame.image_bgr.empty())
     return failure(ErrorCode::bad_format, "Cannot decode the picture " + path.string() + "; it may be cut off.");
+  const int width = frame.image_bgr.cols, height = frame.image_bgr.rows;
+  if (intrinsics_ && (width != intrinsics_->width || height != intrinsics_->height)) {
+    const auto size = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
+    return failure(ErrorCode::bad_format, "The picture " + path.string() + " is " + size(width, height) +
+                                              ", but camera.json beside it tells of a camera of " +
+                                              size(intrinsics_->width, intrinsics_->height) + ".");
+  }
   frame.stamp.frame_id = position_;
   frame.stamp.capture_ns = static_cast<std::int64_t>(1e9 * static_cast<double>(position_) / frames_per_second_);
   ++position_;

@@ -11,14 +11,53 @@ constexpr int max_reach = 32;
 constexpr int half_filter = 2;  // pixels averaged on each side of a step
 constexpr int max_profile = 2 * (max_reach + half_filter) + 2;
 
-// A second edge counts as a rival from this share of the best one's strength on, and from this distance on.
-constexpr float rival_strength = 0.85F;
+// A second edge counts as a rival from this share of the best one's worth on, and from this distance on.
+constexpr float rival_worth = 0.85F;
+constexpr float farther_is_worse = 0.5F;  // of its worth an edge loses so much at the end of the reach
 constexpr int rival_distance = 3;
 
 struct Profile {
   std::array<float, max_profile> grey;
   std::array<float, max_profile> step;
 };
+
+struct Choice {
+  int place = 0;
+  EdgeVerdict verdict = EdgeVerdict::low_contrast;
+};
+
+// How well a peak fits: the strongest of all, or the one most like what is expected, rather near than far.
+float worth_of(float strength, int distance, int reach, float expected) {
+  if (!(expected > 0)) return strength;
+  const float likeness = std::min(strength, expected) / std::max(strength, expected);
+  return likeness * (1 - farther_is_worse * static_cast<float>(distance) / static_cast<float>(reach));
+}
+
+// The best peak among profile.step[0..steps).
+Choice choose_edge(const Profile& profile, int steps, float min_contrast, float expected) {
+  const int reach = steps / 2;
+  const auto step = [&](int k) { return profile.step[static_cast<std::size_t>(k)]; };
+  const auto worth = [&](int k) {
+    const bool peak = step(k) >= min_contrast && step(k) >= step(k - 1) && step(k) >= step(k + 1);
+    return peak ? worth_of(step(k), std::abs(k - reach), reach, expected) : 0;
+  };
+  Choice best{reach, EdgeVerdict::low_contrast};
+  float most = 0;
+  for (int k = 1; k < steps - 1; ++k) {
+    const float value = worth(k);
+    if (value <= most) continue;
+    most = value;
+    best = {k, EdgeVerdict::accepted};
+  }
+  if (best.verdict != EdgeVerdict::accepted) return best;
+  // At either end the true maximum may lie beyond the reach.
+  if (!(expected > 0) && std::max(step(0), step(steps - 1)) > step(best.place))
+    return {best.place, EdgeVerdict::low_contrast};
+  for (int k = 1; k < steps - 1; ++k)
+    if (std::abs(k - best.place) >= rival_distance && worth(k) > rival_worth * most)
+      return {best.place, EdgeVerdict::ambiguous};
+  return best;
+}
 
 EdgeHit search_edge(const cv::Mat1b& picture, const EdgeProbe& probe, int reach, float min_contrast, Profile& profile) {
   const int far_end = reach + half_filter;
@@ -49,25 +88,16 @@ EdgeHit search_edge(const cv::Mat1b& picture, const EdgeProbe& probe, int reach,
   // step[k]: mean of the two pixels after minus mean of the two before, k = 0 at distance -reach.
   const int steps = 2 * reach + 1;
   const float sign = probe.polarity < 0 ? -1.0F : 1.0F;
-  int best = 0;
   for (int k = 0; k < steps; ++k) {
     const float* g = profile.grey.data() + k;
     const float value = 0.5F * sign * (g[3] + g[4] - g[0] - g[1]);
     profile.step[static_cast<std::size_t>(k)] = probe.polarity == 0 ? std::abs(value) : value;
   }
-  for (int k = 1; k < steps; ++k)
-    if (profile.step[static_cast<std::size_t>(k)] > profile.step[static_cast<std::size_t>(best)]) best = k;
+  const Choice choice = choose_edge(profile, steps, min_contrast, probe.contrast);
+  if (choice.verdict != EdgeVerdict::accepted)
+    return {0, profile.step[static_cast<std::size_t>(choice.place)], 0, choice.verdict};
+  const int best = choice.place;
   const float strength = profile.step[static_cast<std::size_t>(best)];
-  if (strength < min_contrast) return {0, strength, 0, EdgeVerdict::low_contrast};
-  // At either end the true maximum may lie beyond the reach.
-  if (best == 0 || best == steps - 1) return {0, strength, 0, EdgeVerdict::low_contrast};
-
-  for (int k = 1; k < steps - 1; ++k) {
-    if (std::abs(k - best) < rival_distance) continue;
-    const auto i = static_cast<std::size_t>(k);
-    const bool peak = profile.step[i] >= profile.step[i - 1] && profile.step[i] >= profile.step[i + 1];
-    if (peak && profile.step[i] > rival_strength * strength) return {0, strength, 0, EdgeVerdict::ambiguous};
-  }
 
   const float before = profile.step[static_cast<std::size_t>(best - 1)];
   const float after = profile.step[static_cast<std::size_t>(best + 1)];

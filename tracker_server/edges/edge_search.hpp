@@ -18,6 +18,7 @@ enum class EdgeVerdict : std::uint8_t {
   outlier = 5,         // an edge, but not where all the others say
   wrong_contrast = 6,  // an edge of quite another strength or brightness than this one has: something lies over it
   not_searched = 7,
+  lonely = 8,  // an edge, but most points of its segment found none: something lies over them
 };
 
 // Where to look: a point in pixels and a unit normal.
@@ -25,6 +26,7 @@ struct EdgeProbe {
   float x = 0, y = 0;
   float nx = 0, ny = 0;
   std::int8_t polarity = 0;  // +1: brighter towards +n; -1: darker towards +n; 0: either
+  float contrast = 0;        // grey levels of the step that is expected; 0: not known, the strongest is taken
 };
 
 struct EdgeHit {

@@ -12,6 +12,7 @@
 #include "tracker_server/pieces/piece_reader.hpp"
 #include "tracker_server/pose/board_tracker.hpp"
 #include "tracker_server/pose/plane_pose.hpp"
+#include "tracker_server/pipeline/debug_view.hpp"
 #include "tracker_server/pose/projection.hpp"
 
 namespace counterpart {
@@ -84,27 +85,6 @@ PoseEstimate estimate_of(const TrackedBoard& seen, const FrameStamp& stamp, std:
       for (int col = row; col < 6; ++col) pose.covariance[i++] = static_cast<float>(covariance(row, col));
   }
   return pose;
-}
-
-DebugView debug_of(const TrackedBoard& seen, const Model& model, const FrameStamp& stamp) {
-  DebugView debug;
-  debug.stamp = stamp;
-  if (seen.status == TrackStatus::lost) return debug;
-  for (const ModelSegment& segment : model.segments) {
-    const Vector3d a = seen.X_CB * segment.a_M, b = seen.X_CB * segment.b_M;
-    if (!(a.z() > 0 && b.z() > 0)) continue;
-    const Vector2d p = project(seen.camera, a), q = project(seen.camera, b);
-    debug.lines.push_back(
-        {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(q.x()), static_cast<float>(q.y())});
-  }
-  for (std::size_t i = 0; i < seen.fit.probes.size(); ++i) {
-    const EdgeProbe& probe = seen.fit.probes[i];
-    const EdgeHit& hit = seen.fit.hits[i];
-    const float along = hit.verdict == EdgeVerdict::accepted || hit.verdict == EdgeVerdict::outlier ? hit.distance : 0;
-    debug.points.push_back(
-        {probe.x + along * probe.nx, probe.y + along * probe.ny, static_cast<std::uint8_t>(hit.verdict)});
-  }
-  return debug;
 }
 
 std::string letters_of(const Occupancy& occupancy) {
@@ -213,7 +193,9 @@ Observation observe(const Frame& frame, ObserveContext& context) {
   settle_intrinsics(board, seen, state.intrinsics);
   result.intrinsics = state.intrinsics;
   result.pose = estimate_of(seen, frame.stamp, state.intrinsics.id);
-  result.debug = debug_of(seen, state.tracker.model(), frame.stamp);
+  result.debug.stamp = frame.stamp;
+  if (seen.status != TrackStatus::lost)
+    result.debug = debug_view(state.tracker.model(), seen.X_CB, seen.camera, seen.fit, frame.stamp);
 
   const bool good = seen.status == TrackStatus::ok || seen.status == TrackStatus::relocalised;
   if (!good || !state.options.read_pieces) return result;

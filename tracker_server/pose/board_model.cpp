@@ -32,6 +32,11 @@ Model board_model(const BoardGeometry& board) {
       }
     }
   model.size_m = n * D;
+  const auto middle = [&](std::size_t i) { return 0.5 * (model.segments[i].a_M + model.segments[i].b_M); };
+  model.beside.resize(model.segments.size());
+  for (std::size_t i = 0; i < model.segments.size(); ++i)
+    for (std::size_t k = 0; k < model.segments.size(); ++k)
+      if (k != i && (middle(i) - middle(k)).norm() < 1.2 * D) model.beside[i].push_back(static_cast<int>(k));
   return model;
 }
 

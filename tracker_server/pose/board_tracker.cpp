@@ -27,9 +27,16 @@ constexpr double largest_rms_px = 1.6;
 constexpr double most_contradicted = 0.09;
 constexpr std::size_t least_points = 30;
 
+// Without a sight of the squares the pose counts when this share of the fixtures' visible edge points found their edge.
+constexpr double least_fixture_share = 0.4;
+constexpr std::size_t fixture_samples = 400;
+
 const std::vector<FitRound> usual_rounds = {{1, 6, 3, 2}, {0, 4, 2, 2}, {0, 3, 1, 2}};
 const std::vector<FitRound> wide_rounds = {{2, 6, 2, 2}, {1, 8, 2, 2}, {1, 5, 2, 2}, {0, 4, 1, 2}, {0, 3, 1, 2}};
 const std::vector<FitRound> settle_rounds = {{1, 5, 2, 2}, {0, 5, 1, 3}, {0, 3, 1, 3}};
+
+// Squares that a pose may be brought back by, one or two at a time.
+constexpr int most_steps_back = 3;
 
 // Of one picture's word about the focal length, how much is believed: its errors are alike from frame to frame.
 constexpr double focal_trust = 0.05;
@@ -69,7 +76,16 @@ BoardTracker::BoardTracker(const BoardTrackerOptions& options)
     : options_(options),
       model_(board_model(options.board)),
       samples_(sample_edges(model_, 4)),
+      board_samples_(samples_.size()),
       motion_(options.predictor) {
+  if (!options.fixtures.empty()) {
+    const Model fixtures = joined_model(options.fixtures);
+    for (EdgeSample sample : sample_edges_in_all(fixtures, fixture_samples)) {
+      sample.segment += static_cast<int>(model_.segments.size());
+      samples_.push_back(sample);
+    }
+    model_ = joined_model({{model_}, {fixtures}});
+  }
   if (options.camera) {
     camera_ = *options.camera;
     focal_.log_focal = std::log(camera_.fx);
@@ -137,17 +153,29 @@ BoardTracker::Attempt BoardTracker::attempt(const Pyramid& pyramid, const Isomet
   const auto visible = visible_samples(model_, samples_, start);
   if (options_.optimizer.gradient_image) {
     const Isometry3d X_CB = fit_to_gradient(pyramid, samples_, visible, camera_, start, options_.optimizer);
-    result.fit = judge_pose(pyramid, samples_, visible, camera_, X_CB);
+    result.fit = judge_pose(pyramid, model_, samples_, visible, camera_, X_CB);
   } else {
-    result.fit = fit_pose(pyramid, samples_, visible, camera_, start, rounds, focal_);
+    result.fit = fit_pose(pyramid, model_, samples_, visible, camera_, start, rounds, focal_);
   }
   if (!result.fit.X_CM.matrix().allFinite() || result.fit.X_CM.translation().z() <= 0) return result;
   result.check = check_chequer(pyramid.levels[0], options_.board, result.fit.camera, result.fit.X_CM, contrast_);
   const bool from_above = (result.fit.X_CM.inverse().translation()).z() > 0;
+  const bool supported = result.check.support >= least_support || held_by_fixtures(result.fit);
   result.good = from_above && result.fit.accepted >= least_points && result.fit.share() >= least_share &&
-                result.fit.rms_px <= largest_rms_px && result.check.support >= least_support &&
-                result.check.contradicted <= most_contradicted && !result.check.shifted();
+                result.fit.rms_px <= largest_rms_px && supported && result.check.contradicted <= most_contradicted &&
+                !result.check.shifted();
   return result;
+}
+
+bool BoardTracker::held_by_fixtures(const PoseFit& fit) const {
+  std::size_t searched = 0, accepted = 0;
+  for (std::size_t i = 0; i < fit.hits.size(); ++i) {
+    if (fit.samples[i] < board_samples_) continue;
+    ++searched;
+    if (fit.hits[i].verdict == EdgeVerdict::accepted) ++accepted;
+  }
+  return accepted >= least_points &&
+         static_cast<double>(accepted) >= least_fixture_share * static_cast<double>(searched);
 }
 
 std::optional<BoardTracker::Attempt> BoardTracker::from_located(const LocatedBoard& located, const Pyramid& pyramid) {
@@ -195,6 +223,10 @@ void BoardTracker::learn(const Attempt& attempt) {
   constexpr float rate_if_changed = 0.05F, where_it_is_px = 0.8F;
   for (std::size_t i = 0; i < attempt.fit.hits.size(); ++i) {
     const EdgeHit& hit = attempt.fit.hits[i];
+    if (attempt.fit.samples[i] >= board_samples_) {
+      remember_look(hit, samples_[attempt.fit.samples[i]]);
+      continue;
+    }
     const bool changed = hit.verdict == EdgeVerdict::wrong_contrast && std::abs(hit.distance) < where_it_is_px;
     if (hit.verdict != EdgeVerdict::accepted && !changed) continue;
     EdgeSample& sample = samples_[attempt.fit.samples[i]];
@@ -235,7 +267,23 @@ void BoardTracker::accept(const Attempt& attempt, std::int64_t time_ns) {
 // Hands come over a board within a few frames, but seldom within one: a pose that explains much less of the picture
 // than the last one did may lie a few squares off.
 bool BoardTracker::doubtful(const Attempt& attempt) const {
-  return attempt.check.support < 0.7 * last_support_;
+  return attempt.check.support < 0.7 * last_support_ && !held_by_fixtures(attempt.fit);
+}
+
+// A pose a few squares off shows on which side the board goes on: it is tried there.
+BoardTracker::Attempt BoardTracker::brought_back(const Pyramid& pyramid, Attempt attempt) const {
+  for (int step = 0; step < most_steps_back && !attempt.good && attempt.check.shifted(); ++step) {
+    std::optional<Attempt> best;
+    for (const Eigen::Vector2i& way : attempt.check.ways_back()) {
+      const Vector2d way_m = options_.board.square_size_m * way.cast<double>();
+      Attempt tried =
+          this->attempt(pyramid, attempt.fit.X_CM * Eigen::Translation3d(way_m.x(), way_m.y(), 0), settle_rounds);
+      if (!best || tried.check.support > best->check.support) best = std::move(tried);
+    }
+    if (!best || best->check.support <= attempt.check.support) break;
+    attempt = *std::move(best);
+  }
+  return attempt;
 }
 
 // From where the board should be by now; the pose that explains the picture best, if none is beyond doubt.
@@ -249,7 +297,7 @@ BoardTracker::Attempt BoardTracker::follow(const Pyramid& pyramid, std::int64_t 
                                                                                {&*last_X_CB_, &wide_rounds}};
   std::optional<Attempt> best;
   for (const auto& [start, rounds] : starts) {
-    Attempt tried = attempt(pyramid, *start, *rounds);
+    Attempt tried = brought_back(pyramid, attempt(pyramid, *start, *rounds));
     const auto rank = [](const Attempt& a) { return std::pair(a.good, a.check.support); };
     if (!best || rank(tried) > rank(*best)) best = std::move(tried);
     if (best->good && !doubtful(*best)) break;

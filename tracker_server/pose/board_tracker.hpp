@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include <opencv2/core/mat.hpp>
 
@@ -15,6 +16,7 @@
 #include "tracker_server/pose/chequer_check.hpp"
 #include "tracker_server/pose/fit.hpp"
 #include "tracker_server/pose/gradient_fit.hpp"
+#include "tracker_server/pose/joined_model.hpp"
 #include "tracker_server/pose/motion.hpp"
 
 namespace counterpart {
@@ -27,6 +29,7 @@ struct BoardTrackerOptions {
   FocalMode focal = FocalMode::fixed;
   Predictor predictor = Predictor::first;
   Optimizer optimizer;
+  std::vector<PlacedModel> fixtures;  // what does not move on the board, or beside it; frame B
 };
 
 struct TrackedBoard {
@@ -62,7 +65,9 @@ class BoardTracker {
     bool good = false;
   };
   Attempt attempt(const Pyramid& pyramid, const Eigen::Isometry3d& start, const std::vector<FitRound>& rounds) const;
+  bool held_by_fixtures(const PoseFit& fit) const;
   bool doubtful(const Attempt& attempt) const;
+  Attempt brought_back(const Pyramid& pyramid, Attempt attempt) const;
   Attempt follow(const Pyramid& pyramid, std::int64_t time_ns) const;
   void forget_looks();
   void predict_zoom();
@@ -74,7 +79,8 @@ class BoardTracker {
 
   BoardTrackerOptions options_;
   Model model_;
-  std::vector<EdgeSample> samples_;
+  std::vector<EdgeSample> samples_;  // the board's first, then those of the fixtures
+  std::size_t board_samples_ = 0;
   Motion motion_;
   Intrinsics camera_;
   FocalPrior focal_;

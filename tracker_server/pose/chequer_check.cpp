@@ -65,11 +65,18 @@ struct Mean {
 
 }  // namespace
 
-bool ChequerCheck::shifted() const {
-  constexpr double goes_on = 0.5, is_missing = 0.25;
-  for (std::size_t side : {0U, 1U, 2U, 3U})
-    if (beyond[side] > goes_on && rim[side ^ 1U] < is_missing) return true;
-  return false;
+bool ChequerCheck::goes_on(std::size_t side) const {
+  constexpr double follows = 0.5, is_missing = 0.25;
+  return beyond[side] > follows && rim[side ^ 1U] < is_missing;
+}
+
+std::vector<Eigen::Vector2i> ChequerCheck::ways_back() const {
+  const Eigen::Vector2i way((goes_on(3) ? 1 : 0) - (goes_on(2) ? 1 : 0), (goes_on(0) ? 1 : 0) - (goes_on(1) ? 1 : 0));
+  if (way.isZero()) return {};
+  if (way.x() != 0 && way.y() != 0) return {way};
+  // One square along alone would change every colour.
+  const Eigen::Vector2i aside(way.y(), way.x());
+  return {2 * way, way + aside, way - aside};
 }
 
 ChequerCheck check_chequer(const cv::Mat1b& grey, const BoardGeometry& board, const Intrinsics& camera,
@@ -108,32 +115,46 @@ ChequerCheck check_chequer(const cv::Mat1b& grey, const BoardGeometry& board, co
   const double typical = std::max(3.0, typical_contrast > 0 ? typical_contrast : check.contrast);
 
   constexpr double clearly = 0.5;
+  constexpr int fewest_beside = 3;
   Mean support, contradicted;
   std::array<Mean, 4> rim, beyond;
+  // Of the line of squares just inside each side and of the one just outside it, by place along the side.
+  std::array<std::vector<double>, 4> inner, outer;
+  for (auto* lines : {&inner, &outer}) lines->fill(std::vector<double>(static_cast<std::size_t>(n), 0.0));
   const auto add = [](Mean& mean, double value) {
     mean.sum += value;
     ++mean.count;
   };
   for (const Step& s : steps) {
     const double value = std::clamp(s.value / typical, -1.0, 1.0);
-    const int place = s.from_left ? s.row : s.col;  // which line of squares the pair lies in
+    const int line = s.from_left ? s.row : s.col;  // which line of squares the pair lies in
+    const auto along = static_cast<std::size_t>(s.from_left ? s.col : s.row);
     const std::size_t first = s.from_left ? 0 : 2;
-    if (place == -1)
-      add(beyond[first], value);
-    else if (place == n)
-      add(beyond[first + 1], value);
+    if (line == -1)
+      outer[first][along] = value;
+    else if (line == n)
+      outer[first + 1][along] = value;
     else {
       add(support, value);
       add(contradicted, value < -clearly ? 1 : 0);
     }
-    if (place == 0) add(rim[first], value);
-    if (place == n - 1) add(rim[first + 1], value);
+    if (line == 0) {
+      add(rim[first], value);
+      inner[first][along] = value;
+    }
+    if (line == n - 1) {
+      add(rim[first + 1], value);
+      inner[first + 1][along] = value;
+    }
   }
   check.support = support.value();
   check.contradicted = contradicted.value();
   for (std::size_t side = 0; side < 4; ++side) {
     check.rim[side] = rim[side].value();
-    check.beyond[side] = beyond[side].count < n / 2 ? 0 : beyond[side].value();
+    // Only where squares are seen inside can it be said whether they go on outside.
+    for (std::size_t i = 0; i < inner[side].size(); ++i)
+      if (inner[side][i] > clearly) add(beyond[side], outer[side][i]);
+    check.beyond[side] = beyond[side].count < fewest_beside ? 0 : beyond[side].value();
   }
   return check;
 }

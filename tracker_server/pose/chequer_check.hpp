@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <opencv2/core/mat.hpp>
@@ -22,7 +24,13 @@ struct ChequerCheck {
   std::array<double, 4> beyond{};
 
   // The pattern goes on beyond one side and is missing at the opposite one.
-  bool shifted() const;
+  bool shifted() const { return goes_on(0) || goes_on(1) || goes_on(2) || goes_on(3); }
+
+  // Of a shifted pose: by how many squares to the right and up the board may lie from it, the colours being as they are.
+  std::vector<Eigen::Vector2i> ways_back() const;
+
+ private:
+  bool goes_on(std::size_t side) const;
 };
 
 // typical_contrast: grey levels between light and dark squares as known so far; 0: as in this picture.

@@ -51,6 +51,7 @@ void aim(const std::vector<EdgeSample>& samples, const std::vector<std::size_t>&
     probe.nx = static_cast<float>(-along.y() / length);
     probe.ny = static_cast<float>(along.x() / length);
     probe.polarity = static_cast<std::int8_t>(sample.polarity);
+    probe.contrast = sample.contrast;
     fit.samples.push_back(visible[i]);
     fit.probes.push_back(probe);
   }
@@ -143,6 +144,41 @@ void judge_contrast(const std::vector<EdgeSample>& samples, PoseFit& fit) {
   }
 }
 
+struct Count {
+  std::size_t searched = 0, accepted = 0;
+  void add(const Count& other) {
+    searched += other.searched;
+    accepted += other.accepted;
+  }
+  bool fewer_than(double share) const { return static_cast<double>(accepted) < share * static_cast<double>(searched); }
+};
+
+// What lies over an edge shows edges of its own here and there, but seldom all along a stretch of it, nor along the
+// segments beside it.
+void judge_company(const Model& model, const std::vector<EdgeSample>& samples, PoseFit& fit) {
+  constexpr std::size_t company = 3, stretch = 4;  // neighbouring points; so many vouch for each other
+  constexpr double least_own = 0.5, least_beside = 0.33;
+  std::vector<Count> counts(model.segments.size());
+  const auto segment_of = [&](std::size_t i) { return static_cast<std::size_t>(samples[fit.samples[i]].segment); };
+  const auto count_of = [&](std::size_t i) {
+    return Count{1, fit.hits[i].verdict == EdgeVerdict::accepted ? std::size_t{1} : std::size_t{0}};
+  };
+  for (std::size_t i = 0; i < fit.hits.size(); ++i) counts[segment_of(i)].add(count_of(i));
+  for (std::size_t first = 0, end = 0; first < fit.hits.size(); first = end) {
+    const std::size_t segment = segment_of(first);
+    Count own;
+    for (end = first; end < fit.hits.size() && end < first + stretch && segment_of(end) == segment; ++end)
+      own.add(count_of(end));
+    Count around = counts[segment];
+    if (!model.beside.empty())
+      for (const int other : model.beside[segment]) around.add(counts[static_cast<std::size_t>(other)]);
+    const bool alone = (own.searched >= company && own.fewer_than(least_own)) ||
+                       (around.searched >= company && around.fewer_than(least_beside));
+    for (std::size_t i = first; alone && i < end; ++i)
+      if (fit.hits[i].verdict == EdgeVerdict::accepted) fit.hits[i].verdict = EdgeVerdict::lonely;
+  }
+}
+
 }  // namespace
 
 Isometry3d moved(const Isometry3d& X_CM, const Vector3d& translation, const Vector3d& rotation) {
@@ -169,6 +205,11 @@ std::vector<EdgeSample> sample_edges(const Model& model, int per_segment) {
     }
   }
   return samples;
+}
+
+std::vector<EdgeSample> sample_edges_in_all(const Model& model, std::size_t wanted) {
+  const std::size_t per_segment = wanted / std::max<std::size_t>(1, model.segments.size());
+  return sample_edges(model, static_cast<int>(std::clamp<std::size_t>(per_segment, 3, 60)));
 }
 
 std::vector<std::size_t> visible_samples(const Model& model, const std::vector<EdgeSample>& samples,
@@ -213,7 +254,14 @@ std::vector<std::size_t> visible_samples(const Model& model, const std::vector<E
   return visible;
 }
 
-PoseFit fit_pose(const Pyramid& pyramid, const std::vector<EdgeSample>& samples,
+void remember_look(const EdgeHit& hit, EdgeSample& sample) {
+  const bool seen = hit.verdict == EdgeVerdict::accepted;
+  sample.polarity = !seen ? 0 : hit.contrast > 0 ? 1 : -1;
+  sample.contrast = seen ? std::abs(hit.contrast) : 0;
+  sample.grey = seen ? hit.grey : 0;
+}
+
+PoseFit fit_pose(const Pyramid& pyramid, const Model& model, const std::vector<EdgeSample>& samples,
                  const std::vector<std::size_t>& visible, const Intrinsics& camera, const Isometry3d& start,
                  const std::vector<FitRound>& rounds, const FocalPrior& focal) {
   PoseFit fit;
@@ -226,6 +274,7 @@ PoseFit fit_pose(const Pyramid& pyramid, const std::vector<EdgeSample>& samples,
     search_edges(pyramid.levels[static_cast<std::size_t>(round.level)], fit.probes, {round.reach_px, least_contrast},
                  fit.hits);
     judge_contrast(samples, fit);
+    judge_company(model, samples, fit);
     fit.searched = fit.probes.size();
     const double reach_px = round.reach_px * static_cast<float>(1 << round.level);
     for (int i = 0; i < round.iterations; ++i) {

@@ -23,8 +23,11 @@ struct EdgeSample {
   float grey = 0;      // grey level half way up that step
 };
 
-// Evenly along each segment, fewer on a model with many.
+// Evenly along each segment.
 std::vector<EdgeSample> sample_edges(const Model& model, int per_segment);
+
+// About so many in all, 3 to 60 on each segment.
+std::vector<EdgeSample> sample_edges_in_all(const Model& model, std::size_t wanted);
 
 // Samples of the edges that can be seen from this pose, by index.
 std::vector<std::size_t> visible_samples(const Model& model, const std::vector<EdgeSample>& samples,
@@ -60,9 +63,13 @@ struct PoseFit {
   std::vector<EdgeHit> hits;
 };
 
-PoseFit fit_pose(const Pyramid& pyramid, const std::vector<EdgeSample>& samples,
+PoseFit fit_pose(const Pyramid& pyramid, const Model& model, const std::vector<EdgeSample>& samples,
                  const std::vector<std::size_t>& visible, const Intrinsics& camera, const Eigen::Isometry3d& start,
                  const std::vector<FitRound>& rounds, const FocalPrior& focal);
+
+// How an edge of an object looks now: the next picture's edge there has the same side bright. What lies behind an outline
+// and which faces meet in an edge change as an object turns, so nothing older is kept.
+void remember_look(const EdgeHit& hit, EdgeSample& sample);
 
 // Turned by a rotation vector about its own origin and moved, both in C.
 Eigen::Isometry3d moved(const Eigen::Isometry3d& X_CM, const Eigen::Vector3d& translation,

@@ -139,9 +139,9 @@ Isometry3d fit_to_gradient(const Pyramid& pyramid, const std::vector<EdgeSample>
   return objective.pose(x.data());
 }
 
-PoseFit judge_pose(const Pyramid& pyramid, const std::vector<EdgeSample>& samples,
+PoseFit judge_pose(const Pyramid& pyramid, const Model& model, const std::vector<EdgeSample>& samples,
                    const std::vector<std::size_t>& visible, const Intrinsics& camera, const Isometry3d& X_CM) {
-  PoseFit fit = fit_pose(pyramid, samples, visible, camera, X_CM, {{0, 4, 1, 1}}, {});
+  PoseFit fit = fit_pose(pyramid, model, samples, visible, camera, X_CM, {{0, 4, 1, 1}}, {});
   fit.X_CM = X_CM;
   return fit;
 }

@@ -31,7 +31,7 @@ Eigen::Isometry3d fit_to_gradient(const Pyramid& pyramid, const std::vector<Edge
                                   const Eigen::Isometry3d& start, const Optimizer& optimizer, double reach_px = 25);
 
 // A pose that is given, looked at as fit_pose looks at its own: what agrees with it and what does not.
-PoseFit judge_pose(const Pyramid& pyramid, const std::vector<EdgeSample>& samples,
+PoseFit judge_pose(const Pyramid& pyramid, const Model& model, const std::vector<EdgeSample>& samples,
                    const std::vector<std::size_t>& visible, const Intrinsics& camera, const Eigen::Isometry3d& X_CM);
 
 }  // namespace counterpart

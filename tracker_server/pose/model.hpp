@@ -30,6 +30,8 @@ struct Model {
   std::vector<ModelSegment> segments;
   std::vector<ModelFace> faces;
   double size_m = 0;  // largest extent
+  // For each segment those beside it, which what lies over it mostly lies over, too. Empty where that is not known.
+  std::vector<std::vector<int>> beside;
 };
 
 // The playing surface with every line of its grid; frame B.

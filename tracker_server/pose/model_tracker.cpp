@@ -1,7 +1,6 @@
 #include "tracker_server/pose/model_tracker.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include <nlopt.h>
@@ -29,11 +28,6 @@ const std::vector<FitRound> tight_rounds = {{0, 4, 1, 2}, {0, 3, 1, 2}};
 const std::vector<FitRound> near_rounds = {{1, 7, 2, 2}, {0, 6, 1, 2}, {0, 4, 1, 2}};
 const std::vector<FitRound> far_rounds = {{2, 8, 1, 3}, {1, 8, 1, 2}, {0, 6, 1, 2}, {0, 4, 1, 2}};
 
-int samples_a_segment(const Model& model) {
-  return static_cast<int>(
-      std::clamp<std::size_t>(wanted_samples / std::max<std::size_t>(1, model.segments.size()), 3, 60));
-}
-
 bool good(const PoseFit& fit) {
   return fit.X_CM.matrix().allFinite() && fit.X_CM.translation().z() > 0 && fit.accepted >= fewest_points &&
          fit.share() >= least_edges_seen && fit.rms_px <= worst_rms_px;
@@ -41,10 +35,9 @@ bool good(const PoseFit& fit) {
 
 }  // namespace
 
-ModelTracker::ModelTracker(Model model, const Intrinsics& camera, Predictor predictor, const Optimizer& optimizer)
+ModelTracker::ModelTracker(Model model, Predictor predictor, const Optimizer& optimizer)
     : model_(std::move(model)),
-      samples_(sample_edges(model_, samples_a_segment(model_))),
-      camera_(camera),
+      samples_(sample_edges_in_all(model_, wanted_samples)),
       motion_(predictor),
       optimizer_(optimizer) {}
 
@@ -54,51 +47,40 @@ void ModelTracker::start_at(const Isometry3d& X_CM) {
   frames_unseen_ = most_frames_unseen;
 }
 
-PoseFit ModelTracker::attempt(const Pyramid& pyramid, const Isometry3d& start,
+PoseFit ModelTracker::attempt(const Pyramid& pyramid, const Intrinsics& camera, const Isometry3d& start,
                               const std::vector<FitRound>& rounds) const {
   const auto visible = visible_samples(model_, samples_, start);
-  if (!optimizer_.gradient_image) return fit_pose(pyramid, samples_, visible, camera_, start, rounds, {});
-  const Isometry3d X_CM = fit_to_gradient(pyramid, samples_, visible, camera_, start, optimizer_);
-  return judge_pose(pyramid, samples_, visible_samples(model_, samples_, X_CM), camera_, X_CM);
+  if (!optimizer_.gradient_image) return fit_pose(pyramid, model_, samples_, visible, camera, start, rounds, {});
+  const Isometry3d X_CM = fit_to_gradient(pyramid, samples_, visible, camera, start, optimizer_);
+  return judge_pose(pyramid, model_, samples_, visible_samples(model_, samples_, X_CM), camera, X_CM);
 }
 
 // Farther than edges are searched: the gradient image pulls from all sides, the edges then make the pose exact.
-PoseFit ModelTracker::search(const Pyramid& pyramid, const Isometry3d& start) const {
+PoseFit ModelTracker::search(const Pyramid& pyramid, const Intrinsics& camera, const Isometry3d& start) const {
   const auto visible = visible_samples(model_, samples_, start);
-  const Isometry3d near = fit_to_gradient(pyramid, samples_, visible, camera_, start, {true, NLOPT_LN_BOBYQA}, 60);
-  return attempt(pyramid, near, near_rounds);
+  const Isometry3d near = fit_to_gradient(pyramid, samples_, visible, camera, start, {true, NLOPT_LN_BOBYQA}, 60);
+  return attempt(pyramid, camera, near, near_rounds);
 }
 
-// How each edge looked when it was last seen well: the next picture's edge there has the same side bright. What lies
-// behind an outline and which faces meet in an edge change as the model turns, so nothing older is kept.
+// What was not searched in the last round is not known either.
 void ModelTracker::remember(const PoseFit& fit) {
-  for (EdgeSample& sample : samples_) {
-    sample.polarity = 0;
-    sample.contrast = 0;
-    sample.grey = 0;
-  }
-  for (std::size_t i = 0; i < fit.hits.size(); ++i) {
-    if (fit.hits[i].verdict != EdgeVerdict::accepted) continue;
-    EdgeSample& sample = samples_[fit.samples[i]];
-    sample.polarity = fit.hits[i].contrast > 0 ? 1 : -1;
-    sample.contrast = std::abs(fit.hits[i].contrast);
-    sample.grey = fit.hits[i].grey;
-  }
+  for (EdgeSample& sample : samples_) remember_look({}, sample);
+  for (std::size_t i = 0; i < fit.hits.size(); ++i) remember_look(fit.hits[i], samples_[fit.samples[i]]);
 }
 
-TrackedModel ModelTracker::track(const Pyramid& pyramid, std::int64_t time_ns) {
+TrackedModel ModelTracker::track(const Pyramid& pyramid, const Intrinsics& camera, std::int64_t time_ns) {
   TrackedModel result;
   if (!last_X_CM_) return result;
   const bool was_lost = frames_unseen_ > most_frames_unseen;
   const Isometry3d predicted = frames_unseen_ == 0 ? motion_.predict(time_ns) : *last_X_CM_;
-  result.fit = attempt(pyramid, predicted, tight_rounds);
+  result.fit = attempt(pyramid, camera, predicted, tight_rounds);
   if (!good(result.fit) || result.fit.share() < plenty) {
-    PoseFit farther = attempt(pyramid, predicted, near_rounds);
+    PoseFit farther = attempt(pyramid, camera, predicted, near_rounds);
     if (!good(result.fit) || farther.share() > result.fit.share()) result.fit = std::move(farther);
   }
-  if (!good(result.fit)) result.fit = attempt(pyramid, predicted, far_rounds);
-  if (!good(result.fit)) result.fit = attempt(pyramid, *last_X_CM_, far_rounds);
-  if (!good(result.fit)) result.fit = search(pyramid, *last_X_CM_);
+  if (!good(result.fit)) result.fit = attempt(pyramid, camera, predicted, far_rounds);
+  if (!good(result.fit)) result.fit = attempt(pyramid, camera, *last_X_CM_, far_rounds);
+  if (!good(result.fit)) result.fit = search(pyramid, camera, *last_X_CM_);
 
   if (good(result.fit)) {
     if (was_lost) motion_.forget();

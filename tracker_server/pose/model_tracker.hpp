@@ -20,21 +20,23 @@ struct TrackedModel {
 
 class ModelTracker {
  public:
-  ModelTracker(Model model, const Intrinsics& camera, Predictor predictor, const Optimizer& optimizer);
+  ModelTracker(Model model, Predictor predictor, const Optimizer& optimizer);
 
   void start_at(const Eigen::Isometry3d& X_CM);
 
   // time_ns grows from call to call. While lost it goes on looking where the model was seen last.
-  TrackedModel track(const Pyramid& pyramid, std::int64_t time_ns);
+  TrackedModel track(const Pyramid& pyramid, const Intrinsics& camera, std::int64_t time_ns);
+
+  const Model& model() const { return model_; }
 
  private:
-  PoseFit attempt(const Pyramid& pyramid, const Eigen::Isometry3d& start, const std::vector<FitRound>& rounds) const;
-  PoseFit search(const Pyramid& pyramid, const Eigen::Isometry3d& start) const;
+  PoseFit attempt(const Pyramid& pyramid, const Intrinsics& camera, const Eigen::Isometry3d& start,
+                  const std::vector<FitRound>& rounds) const;
+  PoseFit search(const Pyramid& pyramid, const Intrinsics& camera, const Eigen::Isometry3d& start) const;
   void remember(const PoseFit& fit);
 
   Model model_;
   std::vector<EdgeSample> samples_;
-  Intrinsics camera_;
   Motion motion_;
   Optimizer optimizer_;
   std::optional<Eigen::Isometry3d> last_X_CM_;
