@@ -1,13 +1,25 @@
 """What every comparison with the stage's truth needs: poses, the camera, quantiles. Standard library only."""
 
+import csv
 import json
 import math
+import statistics
 
 
 def read_truth(path):
     """The lines of a truth.jsonl."""
     with open(path) as lines:
         return [json.loads(line) for line in lines]
+
+
+def read_rows(path):
+    """The lines of a tracker's poses.csv."""
+    with open(path) as lines:
+        return list(csv.DictReader(lines))
+
+
+def median(values):
+    return statistics.median(values) if values else math.nan
 
 
 def rotate(q, v):

@@ -186,9 +186,8 @@ Observation observe(const Frame& frame, ObserveContext& context) {
   const BoardGeometry& board = state.options.board;
   Observation result;
 
-  const Pyramid pyramid = timed(result.step_ms, "pyramid", [&] { return build_pyramid(frame.image_bgr, 3); });
-  TrackedBoard seen = timed(result.step_ms, "pose",
-                            [&] { return state.tracker.track(frame.image_bgr, pyramid, frame.stamp.capture_ns); });
+  TrackedBoard seen =
+      timed(result.step_ms, "pose", [&] { return state.tracker.track(frame.image_bgr, frame.stamp.capture_ns); });
 
   settle_intrinsics(board, seen, state.intrinsics);
   result.intrinsics = state.intrinsics;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include <opencv2/imgproc.hpp>
+
 #include "tracker_server/locate/lattice.hpp"
 #include "tracker_server/pose/normal_equations.hpp"
 #include "tracker_server/pose/plane_pose.hpp"
@@ -38,6 +40,8 @@ const std::vector<FitRound> settle_rounds = {{1, 5, 2, 2}, {0, 5, 1, 3}, {0, 3, 
 // Squares that a pose may be brought back by, one or two at a time.
 constexpr int most_steps_back = 3;
 
+constexpr int pyramid_levels = 3;
+
 // Of one picture's word about the focal length, how much is believed: its errors are alike from frame to frame.
 constexpr double focal_trust = 0.05;
 constexpr double focal_memory = 0.98;
@@ -64,6 +68,34 @@ std::array<Matrix3d, 2> ways_round(const LocatedBoard& located, const BoardGeome
   const double near = apply(H, 0.5 * n, 0).y(), far = apply(H, 0.5 * n, n).y();
   if (near < far) std::swap(H, turned);
   return {H, turned};
+}
+
+// The part of the picture that holds the model, the squares that would lie round the board, and room to search.
+cv::Rect part_with(const Model& model, const BoardGeometry& board, const Intrinsics& camera, const Isometry3d& X_CB,
+                   const cv::Size& picture) {
+  constexpr float room_px = 24;
+  const cv::Rect whole({0, 0}, picture);
+  const double half = (0.5 * board.squares + 1) * board.square_size_m;
+  std::vector<cv::Point2f> points;
+  const auto add = [&](const Eigen::Vector3d& p_B) {
+    const Eigen::Vector3d p_C = X_CB * p_B;
+    if (!(p_C.z() > 1e-3)) return false;
+    const Vector2d p = project(camera, p_C);
+    if (!(p.cwiseAbs().maxCoeff() < 1e5)) return false;
+    points.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()));
+    return true;
+  };
+  for (const auto& [x, y] : {std::pair{-half, -half}, {half, -half}, {half, half}, {-half, half}})
+    if (!add({x, y, 0})) return whole;
+  if (model.faces.size() > 1)  // fixtures
+    for (const ModelSegment& segment : model.segments)
+      if (!add(segment.a_M) || !add(segment.b_M)) return whole;
+  const cv::Rect2f box = cv::boundingRect(points);
+  // Whole cells of the coarsest level, so that the part's pyramid is the picture's.
+  constexpr int cell = 1 << (pyramid_levels - 1);
+  const cv::Point low(static_cast<int>((box.x - room_px) / cell) * cell, static_cast<int>((box.y - room_px) / cell) * cell);
+  const cv::Point high(static_cast<int>(box.x + box.width + room_px), static_cast<int>(box.y + box.height + room_px));
+  return cv::Rect(low, high) & whole;
 }
 
 double angle_between(const Isometry3d& a, const Isometry3d& b) {
@@ -147,18 +179,24 @@ void BoardTracker::turn_round() {
   start_X_CB_ = X_CB;
 }
 
-BoardTracker::Attempt BoardTracker::attempt(const Pyramid& pyramid, const Isometry3d& start,
+BoardTracker::Attempt BoardTracker::attempt(const PictureView& view, const Isometry3d& start,
                                             const std::vector<FitRound>& rounds) const {
   Attempt result;
   const auto visible = visible_samples(model_, samples_, start);
+  const Intrinsics camera = view.camera_of_part(camera_);
   if (options_.optimizer.gradient_image) {
-    const Isometry3d X_CB = fit_to_gradient(pyramid, samples_, visible, camera_, start, options_.optimizer);
-    result.fit = judge_pose(pyramid, model_, samples_, visible, camera_, X_CB);
+    const Isometry3d X_CB = fit_to_gradient(view.pyramid, samples_, visible, camera, start, options_.optimizer);
+    result.fit = judge_pose(view.pyramid, model_, samples_, visible, camera, X_CB);
   } else {
-    result.fit = fit_pose(pyramid, model_, samples_, visible, camera_, start, rounds, focal_);
+    result.fit = fit_pose(view.pyramid, model_, samples_, visible, camera, start, rounds, focal_);
   }
   if (!result.fit.X_CM.matrix().allFinite() || result.fit.X_CM.translation().z() <= 0) return result;
-  result.check = check_chequer(pyramid.levels[0], options_.board, result.fit.camera, result.fit.X_CM, contrast_);
+  result.check = check_chequer(view.pyramid.levels[0], options_.board, result.fit.camera, result.fit.X_CM, contrast_);
+  result.fit.camera = view.camera_of_whole(result.fit.camera);
+  for (EdgeProbe& probe : result.fit.probes) {
+    probe.x += static_cast<float>(view.part.x);
+    probe.y += static_cast<float>(view.part.y);
+  }
   const bool from_above = (result.fit.X_CM.inverse().translation()).z() > 0;
   const bool supported = result.check.support >= least_support || held_by_fixtures(result.fit);
   result.good = from_above && result.fit.accepted >= least_points && result.fit.share() >= least_share &&
@@ -178,8 +216,8 @@ bool BoardTracker::held_by_fixtures(const PoseFit& fit) const {
          static_cast<double>(accepted) >= least_fixture_share * static_cast<double>(searched);
 }
 
-std::optional<BoardTracker::Attempt> BoardTracker::from_located(const LocatedBoard& located, const Pyramid& pyramid) {
-  const int width = pyramid.levels[0].cols, height = pyramid.levels[0].rows;
+std::optional<BoardTracker::Attempt> BoardTracker::from_located(const LocatedBoard& located, const PictureView& view) {
+  const int width = view.part.width, height = view.part.height;  // the whole picture's
   std::optional<PlanePose> chosen;
   for (const Matrix3d& H : ways_round(located, options_.board)) {
     const bool known = options_.camera.has_value() || ever_seen_;
@@ -197,24 +235,24 @@ std::optional<BoardTracker::Attempt> BoardTracker::from_located(const LocatedBoa
     // One sight from above says little; the frames to come will say more.
     focal_.information = 1 / (0.3 * 0.3);
   }
-  Attempt result = attempt(pyramid, chosen->X_CB, settle_rounds);
+  Attempt result = attempt(view, chosen->X_CB, settle_rounds);
   if (!result.good) return std::nullopt;
   return result;
 }
 
-std::optional<BoardTracker::Attempt> BoardTracker::find(const cv::Mat& picture_bgr, const Pyramid& pyramid) {
+std::optional<BoardTracker::Attempt> BoardTracker::find(const cv::Mat& picture_bgr, const PictureView& view) {
   // A start that was given is tried on one picture; if it does not fit, the board is sought like any other.
   if (const auto start = std::exchange(start_X_CB_, std::nullopt)) {
-    Attempt result = attempt(pyramid, *start, wide_rounds);
+    Attempt result = attempt(view, *start, wide_rounds);
     if (result.good) return result;
   }
   if (const auto corners = std::exchange(start_corners_, std::nullopt)) {
-    if (const auto board = board_at_corners(pyramid, *corners, options_.board.squares))
-      if (auto result = from_located(*board, pyramid)) return result;
+    if (const auto board = board_at_corners(view.pyramid, *corners, options_.board.squares))
+      if (auto result = from_located(*board, view)) return result;
   }
   const auto located = locate_board(picture_bgr, options_.board.squares);
   if (!located) return std::nullopt;
-  return from_located(*located, pyramid);
+  return from_located(*located, view);
 }
 
 void BoardTracker::learn(const Attempt& attempt) {
@@ -271,13 +309,13 @@ bool BoardTracker::doubtful(const Attempt& attempt) const {
 }
 
 // A pose a few squares off shows on which side the board goes on: it is tried there.
-BoardTracker::Attempt BoardTracker::brought_back(const Pyramid& pyramid, Attempt attempt) const {
+BoardTracker::Attempt BoardTracker::brought_back(const PictureView& view, Attempt attempt) const {
   for (int step = 0; step < most_steps_back && !attempt.good && attempt.check.shifted(); ++step) {
     std::optional<Attempt> best;
     for (const Eigen::Vector2i& way : attempt.check.ways_back()) {
       const Vector2d way_m = options_.board.square_size_m * way.cast<double>();
       Attempt tried =
-          this->attempt(pyramid, attempt.fit.X_CM * Eigen::Translation3d(way_m.x(), way_m.y(), 0), settle_rounds);
+          this->attempt(view, attempt.fit.X_CM * Eigen::Translation3d(way_m.x(), way_m.y(), 0), settle_rounds);
       if (!best || tried.check.support > best->check.support) best = std::move(tried);
     }
     if (!best || best->check.support <= attempt.check.support) break;
@@ -286,8 +324,19 @@ BoardTracker::Attempt BoardTracker::brought_back(const Pyramid& pyramid, Attempt
   return attempt;
 }
 
+// The usual case: the board is where it should be by now. Nothing if that is not beyond doubt.
+std::optional<BoardTracker::Attempt> BoardTracker::follow_nearby(const cv::Mat& picture_bgr,
+                                                                 std::int64_t time_ns) const {
+  const Isometry3d predicted = motion_.predict(time_ns);
+  const cv::Rect part = part_with(model_, options_.board, camera_, predicted, picture_bgr.size());
+  if (part.empty()) return std::nullopt;
+  Attempt tried = attempt(view_of(picture_bgr, part, pyramid_levels), predicted, usual_rounds);
+  if (!tried.good || doubtful(tried)) return std::nullopt;
+  return tried;
+}
+
 // From where the board should be by now; the pose that explains the picture best, if none is beyond doubt.
-BoardTracker::Attempt BoardTracker::follow(const Pyramid& pyramid, std::int64_t time_ns) const {
+BoardTracker::Attempt BoardTracker::follow(const PictureView& view, std::int64_t time_ns) const {
   const Isometry3d predicted = motion_.predict(time_ns);
   const Isometry3d bent = motion_.predict(time_ns, Predictor::second);
   const std::pair<const Isometry3d*, const std::vector<FitRound>*> starts[] = {{&predicted, &usual_rounds},
@@ -297,7 +346,7 @@ BoardTracker::Attempt BoardTracker::follow(const Pyramid& pyramid, std::int64_t 
                                                                                {&*last_X_CB_, &wide_rounds}};
   std::optional<Attempt> best;
   for (const auto& [start, rounds] : starts) {
-    Attempt tried = brought_back(pyramid, attempt(pyramid, *start, *rounds));
+    Attempt tried = brought_back(view, attempt(view, *start, *rounds));
     const auto rank = [](const Attempt& a) { return std::pair(a.good, a.check.support); };
     if (!best || rank(tried) > rank(*best)) best = std::move(tried);
     if (best->good && !doubtful(*best)) break;
@@ -324,24 +373,32 @@ bool BoardTracker::follow_light(const PoseFit& fit) {
   return true;
 }
 
-TrackedBoard BoardTracker::track(const cv::Mat& picture_bgr, const Pyramid& pyramid, std::int64_t time_ns) {
-  const int width = pyramid.levels[0].cols, height = pyramid.levels[0].rows;
+TrackedBoard BoardTracker::track(const cv::Mat& picture_bgr, std::int64_t time_ns) {
+  const int width = picture_bgr.cols, height = picture_bgr.rows;
   if (!options_.camera && ever_seen_ && (camera_.width != width || camera_.height != height)) forget();
+  std::optional<PictureView> whole;
+  const auto whole_view = [&]() -> const PictureView& {
+    if (!whole) whole = view_of(picture_bgr, {0, 0, width, height}, pyramid_levels);
+    return *whole;
+  };
 
   TrackedBoard result;
   const bool was_tracking = tracking_;
   std::optional<Attempt> found;
   if (tracking_ && !start_X_CB_) {
     predict_zoom();
-    Attempt tried = follow(pyramid, time_ns);
-    if (!tried.good && follow_light(tried.fit)) tried = follow(pyramid, time_ns);
+    found = follow_nearby(picture_bgr, time_ns);
+  }
+  if (!found && tracking_ && !start_X_CB_) {
+    Attempt tried = follow(whole_view(), time_ns);
+    if (!tried.good && follow_light(tried.fit)) tried = follow(whole_view(), time_ns);
     result.fit = tried.fit;
     result.check = tried.check;
     if (tried.good) found = std::move(tried);
   }
   bool relocated = false;
   if (!found || doubtful(*found)) {
-    auto anew = find(picture_bgr, pyramid);
+    auto anew = find(picture_bgr, whole_view());
     if (anew && (!found || anew->check.support > found->check.support + 0.1)) {
       found = std::move(anew);
       relocated = true;

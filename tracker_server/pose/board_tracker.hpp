@@ -11,7 +11,7 @@
 #include "protocol/vocabulary/board_geometry.hpp"
 #include "protocol/vocabulary/intrinsics.hpp"
 #include "protocol/vocabulary/pose.hpp"
-#include "tracker_server/edges/pyramid.hpp"
+#include "tracker_server/edges/picture_view.hpp"
 #include "tracker_server/locate/locate.hpp"
 #include "tracker_server/pose/chequer_check.hpp"
 #include "tracker_server/pose/fit.hpp"
@@ -50,7 +50,7 @@ class BoardTracker {
   void forget();
 
   // time_ns grows from call to call. The picture's size may change: the tracker then starts afresh.
-  TrackedBoard track(const cv::Mat& picture_bgr, const Pyramid& pyramid, std::int64_t time_ns);
+  TrackedBoard track(const cv::Mat& picture_bgr, std::int64_t time_ns);
 
   // The board is lying the other way round than was thought: turns the frame B by 180 degrees.
   void turn_round();
@@ -64,16 +64,17 @@ class BoardTracker {
     ChequerCheck check;
     bool good = false;
   };
-  Attempt attempt(const Pyramid& pyramid, const Eigen::Isometry3d& start, const std::vector<FitRound>& rounds) const;
+  Attempt attempt(const PictureView& view, const Eigen::Isometry3d& start, const std::vector<FitRound>& rounds) const;
   bool held_by_fixtures(const PoseFit& fit) const;
   bool doubtful(const Attempt& attempt) const;
-  Attempt brought_back(const Pyramid& pyramid, Attempt attempt) const;
-  Attempt follow(const Pyramid& pyramid, std::int64_t time_ns) const;
+  Attempt brought_back(const PictureView& view, Attempt attempt) const;
+  std::optional<Attempt> follow_nearby(const cv::Mat& picture_bgr, std::int64_t time_ns) const;
+  Attempt follow(const PictureView& view, std::int64_t time_ns) const;
   void forget_looks();
   void predict_zoom();
   bool follow_light(const PoseFit& fit);
-  std::optional<Attempt> find(const cv::Mat& picture_bgr, const Pyramid& pyramid);
-  std::optional<Attempt> from_located(const LocatedBoard& located, const Pyramid& pyramid);
+  std::optional<Attempt> find(const cv::Mat& picture_bgr, const PictureView& view);
+  std::optional<Attempt> from_located(const LocatedBoard& located, const PictureView& view);
   void accept(const Attempt& attempt, std::int64_t time_ns);
   void learn(const Attempt& attempt);
 

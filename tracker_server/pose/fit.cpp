@@ -92,7 +92,7 @@ bool improve(const std::vector<EdgeSample>& samples, const FitRound& round, doub
     J.head<3>() = g;
     J.segment<3>(3) = r_C.cross(g);
     J(6) = nx * (pixel.x() - fit.camera.cx) + ny * (pixel.y() - fit.camera.cy);
-    A.selfadjointView<Eigen::Lower>().rankUpdate(J, weight);
+    A.noalias() += (weight * J) * J.transpose();
     b += (weight * residual) * J;
     squares += weight * residual * residual;
     weights += weight;
@@ -101,7 +101,6 @@ bool improve(const std::vector<EdgeSample>& samples, const FitRound& round, doub
   fit.accepted = used;
   fit.rms_px = weights > 0 ? std::sqrt(squares / weights) : 0;
   if (used < 8) return false;
-  A = A.selfadjointView<Eigen::Lower>();
   const double sigma = std::max(edge_sigma_px, fit.rms_px);
   fit.information = A / (sigma * sigma);
 

@@ -186,13 +186,14 @@ Result<Follow> follow_board(const TrackArguments& arguments, const Camera& camer
     tracker->start_at(**start);
   }
   return [tracker, others, fixtures, debug = !arguments.debug.empty()](const Frame& frame) -> Sight {
-    const Pyramid pyramid = build_pyramid(frame.image_bgr, 3);
-    const TrackedBoard board = tracker->track(frame.image_bgr, pyramid, frame.stamp.capture_ns);
+    const TrackedBoard board = tracker->track(frame.image_bgr, frame.stamp.capture_ns);
     Sight sight{estimate_of(board.status, board.X_CB, board.fit.rms_px, frame.stamp), board.camera, {}, {}};
     for (const auto& [name, X_BM] : fixtures)
       sight.objects.push_back({name, estimate_of(board.status, board.X_CB * X_BM, board.fit.rms_px, frame.stamp)});
-    for (NamedPose& object : poses_of(others->track(pyramid, board.camera, frame.stamp.capture_ns), frame.stamp))
-      sight.objects.push_back(std::move(object));
+    if (!others->groups().empty()) {
+      const auto seen = others->track(build_pyramid(frame.image_bgr, 3), board.camera, frame.stamp.capture_ns);
+      for (NamedPose& object : poses_of(seen, frame.stamp)) sight.objects.push_back(std::move(object));
+    }
     if (debug) {
       if (board.status != TrackStatus::lost)
         sight.debug.push_back(debug_view(tracker->model(), board.X_CB, board.camera, board.fit, frame.stamp));

@@ -44,7 +44,7 @@ TEST(Observe, GivesPoseAndPiecesOfAGameBoard) {
   EXPECT_GT(seen.pose.covariance[0], 0);
   EXPECT_FALSE(seen.debug.lines.empty());
   EXPECT_FALSE(seen.debug.points.empty());
-  for (const char* step : {"pyramid", "pose", "view", "pieces"}) EXPECT_TRUE(seen.step_ms.contains(step)) << step;
+  for (const char* step : {"pose", "view", "pieces"}) EXPECT_TRUE(seen.step_ms.contains(step)) << step;
   ASSERT_TRUE(seen.occupancy);
   EXPECT_FALSE(seen.occupancy->covered);
   EXPECT_GT(seen.occupancy->stable_ns, 0);

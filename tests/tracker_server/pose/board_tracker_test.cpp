@@ -37,7 +37,7 @@ BoardTrackerOptions options_for(const BoardScene& scene) {
 }
 
 TrackedBoard see(BoardTracker& tracker, const cv::Mat& picture, int frame) {
-  return tracker.track(picture, build_pyramid(picture, 3), frame * frame_ns);
+  return tracker.track(picture, frame * frame_ns);
 }
 
 // The board's pattern is the same when turned by 180 degrees: either way round is right until pieces tell.

@@ -107,7 +107,7 @@ TEST(BoardTracker, IsHeldByAFixtureWhileTheWholeBoardIsCovered) {
       scene.before = [](int x, int) { return x < 505 ? std::optional(cv::Vec3b(200, 200, 200)) : std::nullopt; };
     cv::Mat picture = test::paint(scene, 2);
     test::paint_cube(scene.camera, scene.X_CB * X_BM, picture);
-    const TrackedBoard seen = tracker.track(picture, build_pyramid(picture, 3), frame * frame_ns);
+    const TrackedBoard seen = tracker.track(picture, frame * frame_ns);
     ASSERT_TRUE(seen.status == TrackStatus::ok || (frame == 0 && seen.status == TrackStatus::relocalised)) << frame;
     const double off = test::farthest_crossing_px(scene.board, scene.camera, seen.X_CB, scene.camera, scene.X_CB);
     // A box of 10 cm tells where a corner half a metre away is.
