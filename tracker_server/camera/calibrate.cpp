@@ -13,33 +13,56 @@ namespace counterpart {
 Result<BoardSight> sight_board(const cv::Mat& picture_bgr, int squares) {
   const auto board = locate_board(picture_bgr, squares);
   if (!board) return failure(ErrorCode::not_found, "No board in the picture.");
-  cv::Mat1b grey;
-  cv::cvtColor(picture_bgr, grey, cv::COLOR_BGR2GRAY);
-
   std::vector<cv::Point2f> expected;
-  std::vector<cv::Point3f> places;
   for (int row = 1; row < squares; ++row)
     for (int col = 1; col < squares; ++col) {
       const Eigen::Vector2d p = board->to_pixel(col, row);
       expected.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()));
-      places.emplace_back(static_cast<float>(col), static_cast<float>(row), 0.0F);
     }
+  return sight_crossings(picture_bgr, squares, expected, 1.5F + 0.02F * static_cast<float>(cv::norm(expected[1] - expected[0])));
+}
+
+Result<BoardSight> sight_crossings(const cv::Mat& picture_bgr, int squares, const std::vector<cv::Point2f>& expected_px,
+                                   float allowed_px) {
+  cv::Mat1b grey;
+  cv::cvtColor(picture_bgr, grey, cv::COLOR_BGR2GRAY);
   // Near enough to a crossing that its window holds no other one.
-  const double square_px = (board->to_pixel(1, 1) - board->to_pixel(0, 1)).norm();
+  const double square_px = cv::norm(expected_px[1] - expected_px[0]);
   const int half = std::clamp(static_cast<int>(square_px / 5), 3, 12);
-  std::vector<cv::Point2f> found = expected;
-  cv::cornerSubPix(grey, found, cv::Size(half, half), cv::Size(-1, -1),
-                   cv::TermCriteria(cv::TermCriteria::EPS + cv::TermCriteria::COUNT, 40, 0.005));
+  const cv::Rect2f inside(static_cast<float>(half), static_cast<float>(half), static_cast<float>(grey.cols - 2 * half),
+                          static_cast<float>(grey.rows - 2 * half));
+  std::vector<cv::Point2f> expected;
   BoardSight sight;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    // A crossing under a piece runs away to the piece's rim.
-    if (cv::norm(found[i] - expected[i]) > 1.5 + 0.02 * square_px) continue;
-    sight.on_board.push_back(places[i]);
-    sight.in_picture.push_back(found[i]);
+  for (std::size_t i = 0; i < expected_px.size(); ++i) {
+    if (!inside.contains(expected_px[i])) continue;
+    const auto per_row = static_cast<std::size_t>(squares - 1);
+    expected.push_back(expected_px[i]);
+    sight.on_board.emplace_back(static_cast<float>(i % per_row + 1), static_cast<float>(i / per_row + 1), 0.0F);
   }
-  if (sight.in_picture.size() < found.size() / 2)
+  if (expected.size() < expected_px.size() / 2)
+    return failure(ErrorCode::not_found, "Too little of the board can be seen in the picture.");
+  sight.in_picture = expected;
+  cv::cornerSubPix(grey, sight.in_picture, cv::Size(half, half), cv::Size(-1, -1),
+                   cv::TermCriteria(cv::TermCriteria::EPS + cv::TermCriteria::COUNT, 40, 0.005));
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    // A crossing under a piece runs away to the piece's rim.
+    if (cv::norm(sight.in_picture[i] - expected[i]) > static_cast<double>(allowed_px)) continue;
+    sight.in_picture[kept] = sight.in_picture[i];
+    sight.on_board[kept++] = sight.on_board[i];
+  }
+  sight.in_picture.resize(kept);
+  sight.on_board.resize(kept);
+  if (kept < expected_px.size() / 2)
     return failure(ErrorCode::not_found, "Too little of the board can be seen in the picture.");
   return sight;
+}
+
+double movement_px(const BoardSight& a, const BoardSight& b) {
+  double sum = 0;
+  const std::size_t count = std::min(a.in_picture.size(), b.in_picture.size());
+  for (std::size_t i = 0; i < count; ++i) sum += cv::norm(a.in_picture[i] - b.in_picture[i]);
+  return sum / static_cast<double>(count);
 }
 
 namespace {
@@ -61,7 +84,7 @@ int tilted_views(const std::vector<cv::Mat>& rotations) {
 
 }  // namespace
 
-Result<Calibration> calibrate(const std::vector<BoardSight>& sights, int width, int height) {
+Result<Calibration> calibrate(const std::vector<BoardSight>& sights, int width, int height, LensModel lens) {
   if (sights.size() < 3)
     return failure(ErrorCode::unavailable,
                    "A calibration needs the board in at least 3 pictures, from clearly "
@@ -81,10 +104,11 @@ Result<Calibration> calibrate(const std::vector<BoardSight>& sights, int width, 
   std::vector<cv::Mat> rotations, translations;
   cv::Mat deviations, extrinsic_deviations, view_errors;
   double rms = 0;
+  int flags = cv::CALIB_USE_INTRINSIC_GUESS | cv::CALIB_FIX_ASPECT_RATIO | cv::CALIB_FIX_K3;
+  if (lens == LensModel::k1) flags |= cv::CALIB_FIX_K2 | cv::CALIB_ZERO_TANGENT_DIST;
   try {
     rms = cv::calibrateCamera(on_board, in_picture, cv::Size(width, height), K, dist, rotations, translations,
-                              deviations, extrinsic_deviations, view_errors,
-                              cv::CALIB_USE_INTRINSIC_GUESS | cv::CALIB_FIX_ASPECT_RATIO | cv::CALIB_FIX_K3);
+                              deviations, extrinsic_deviations, view_errors, flags);
   } catch (const cv::Exception& error) {
     return failure(ErrorCode::not_a_number, std::string("The calibration did not converge: ") + error.what());
   }

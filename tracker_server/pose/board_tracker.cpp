@@ -124,6 +124,7 @@ BoardTracker::BoardTracker(const BoardTrackerOptions& options)
     focal_.information = 1 / (0.2 * 0.2);
   }
   focal_.estimate = !options.camera || options.focal == FocalMode::estimate;
+  if (options.estimate_lens) lens_.emplace(options.board);
 }
 
 void BoardTracker::start_at(const Isometry3d& X_CB) {
@@ -302,6 +303,18 @@ void BoardTracker::accept(const Attempt& attempt, std::int64_t time_ns) {
   start_corners_.reset();
 }
 
+// The camera is another one than was thought; the pose follows in the next picture.
+void BoardTracker::adopt(const Calibration& calibration) {
+  const std::uint32_t id = camera_.id;
+  camera_ = calibration.camera;
+  camera_.id = id;
+  focal_.log_focal = std::log(camera_.fx);
+  focal_.information = 1 / std::pow(std::max(1e-4, calibration.focal_sigma_px / camera_.fx), 2);
+  zoom_rate_ = 0;
+  motion_.forget();
+  motion_.add(*last_X_CB_, 0);
+}
+
 // Hands come over a board within a few frames, but seldom within one: a pose that explains much less of the picture
 // than the last one did may lie a few squares off.
 bool BoardTracker::doubtful(const Attempt& attempt) const {
@@ -415,6 +428,8 @@ TrackedBoard BoardTracker::track(const cv::Mat& picture_bgr, std::int64_t time_n
     result.camera = found->fit.camera;
     result.fit = std::move(found->fit);
     result.check = found->check;
+    if (lens_)
+      if (const auto calibration = lens_->add(picture_bgr, camera_, result.X_CB)) adopt(*calibration);
     return result;
   }
   ++frames_unseen_;

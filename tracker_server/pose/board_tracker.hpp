@@ -17,6 +17,7 @@
 #include "tracker_server/pose/fit.hpp"
 #include "tracker_server/pose/gradient_fit.hpp"
 #include "tracker_server/pose/joined_model.hpp"
+#include "tracker_server/pose/lens_estimator.hpp"
 #include "tracker_server/pose/motion.hpp"
 
 namespace counterpart {
@@ -27,6 +28,7 @@ struct BoardTrackerOptions {
   BoardGeometry board;
   std::optional<Intrinsics> camera;  // empty: of unknown focal length, which is estimated
   FocalMode focal = FocalMode::fixed;
+  bool estimate_lens = false;  // principal point and distortion, too, once the board was seen from several sides
   Predictor predictor = Predictor::first;
   Optimizer optimizer;
   std::vector<PlacedModel> fixtures;  // what does not move on the board, or beside it; frame B
@@ -77,6 +79,7 @@ class BoardTracker {
   std::optional<Attempt> from_located(const LocatedBoard& located, const PictureView& view);
   void accept(const Attempt& attempt, std::int64_t time_ns);
   void learn(const Attempt& attempt);
+  void adopt(const Calibration& calibration);
 
   BoardTrackerOptions options_;
   Model model_;
@@ -85,6 +88,7 @@ class BoardTracker {
   Motion motion_;
   Intrinsics camera_;
   FocalPrior focal_;
+  std::optional<LensEstimator> lens_;
   double zoom_rate_ = 0;     // change of the log focal length a picture
   double contrast_ = 0;      // grey levels between light and dark squares
   double last_support_ = 0;  // of the last pose that was believed

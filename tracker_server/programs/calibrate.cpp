@@ -22,14 +22,6 @@ struct CalibrateArguments {
   int most_sights = 30;
 };
 
-// How far the board has moved in the picture since the last sight that was kept, pixels.
-double movement(const BoardSight& a, const BoardSight& b) {
-  double sum = 0;
-  const std::size_t count = std::min(a.in_picture.size(), b.in_picture.size());
-  for (std::size_t i = 0; i < count; ++i) sum += cv::norm(a.in_picture[i] - b.in_picture[i]);
-  return sum / static_cast<double>(count);
-}
-
 Result<void> run(const CalibrateArguments& arguments) {
   auto camera = open_camera(arguments.source, Pace::lockstep);
   if (!camera) return tl::make_unexpected(camera.error());
@@ -46,7 +38,7 @@ Result<void> run(const CalibrateArguments& arguments) {
     height = picture.rows;
     auto sight = sight_board(picture, arguments.squares);
     // Frames in which hardly anything moved would only count the same sight twice.
-    if (!sight || (!sights.empty() && movement(sights.back(), *sight) < 0.015 * width)) continue;
+    if (!sight || (!sights.empty() && movement_px(sights.back(), *sight) < 0.015 * width)) continue;
     sights.push_back(std::move(*sight));
   }
   const auto result = calibrate(sights, width, height);

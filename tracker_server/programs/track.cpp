@@ -45,6 +45,7 @@ struct TrackArguments {
   std::string played_on = "dark";
   std::string init = "auto";
   std::string focal = "fixed";
+  std::string lens = "fixed";
   std::string predictor = "first";
   std::string optimizer = "gauss-newton";
   std::string camera_json;
@@ -156,6 +157,7 @@ Result<Follow> follow_board(const TrackArguments& arguments, const Camera& camer
   const auto intrinsics = intrinsics_of(arguments, camera);
   if (!intrinsics) return tl::make_unexpected(intrinsics.error());
   options.camera = *intrinsics;
+  options.estimate_lens = arguments.lens == "estimate";
   options.focal = arguments.focal == "estimate" ? FocalMode::estimate : FocalMode::fixed;
   options.predictor = predictor;
   options.optimizer = optimizer;
@@ -282,7 +284,7 @@ Result<void> track(const TrackArguments& arguments) {
   std::map<std::string, PoseLog> object_poses;
   std::map<std::string, Tally> objects;
   int frames = 0;
-  double focal_px = 0;
+  Intrinsics last_camera;
   catch_stop_signals();
   while (!stop_requested()) {
     auto next = (*camera)->next();
@@ -298,7 +300,7 @@ Result<void> track(const TrackArguments& arguments) {
     if (!arguments.debug.empty())
       if (auto drawn = save_debug_picture(arguments.debug, frame, seen.debug); !drawn) return drawn;
     main.add(seen.pose);
-    if (usable(seen.pose)) focal_px = seen.camera.fx;
+    if (usable(seen.pose)) last_camera = seen.camera;
     for (const auto& [name, pose] : seen.objects) {
       PoseLog& log = object_poses[name];
       if (objects.count(name) == 0)
@@ -322,7 +324,10 @@ Result<void> track(const TrackArguments& arguments) {
     report.update(summary_of(main));
     report["ms_median"] = ms.value("median", 0.0);
     report["ms_p95"] = ms.value("p95", 0.0);
-    report["fx"] = focal_px;
+    report["fx"] = last_camera.fx;
+    report["cx"] = last_camera.cx;
+    report["cy"] = last_camera.cy;
+    report["dist"] = last_camera.dist;
     for (const auto& [name, tally] : objects) report["objects"][name] = summary_of(tally);
     std::ofstream file(arguments.report);
     file << report.dump(2) << '\n';
@@ -354,6 +359,10 @@ void add_track(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"dark", "light"}));
   command->add_option("--init", arguments->init, "auto, a file with a pose, or corners=x0,y0,...,x3,y3");
   command->add_option("--focal", arguments->focal, "fixed or estimate; estimated anyway if the camera is not known")
+      ->check(CLI::IsMember({"fixed", "estimate"}));
+  command
+      ->add_option("--lens", arguments->lens,
+                   "fixed or estimate: principal point and distortion, too, once the board was seen from several sides")
       ->check(CLI::IsMember({"fixed", "estimate"}));
   command->add_option("--predictor", arguments->predictor, "none, first or second order")
       ->check(CLI::IsMember({"none", "first", "second"}));

@@ -230,6 +230,31 @@ TEST(BoardTracker, APictureWithoutABoardIsLost) {
   EXPECT_EQ(see(tracker, cv::Mat(4, 4, CV_8UC3, cv::Scalar::all(0)), 1).status, TrackStatus::lost);
 }
 
+// What the tracker says of its own certainty is true: the squared errors, in units of the covariance it tells, are as many
+// as there are unknowns (chi squared, 6 on average) over many pictures of other noise and other places.
+TEST(BoardTracker, TheCovarianceIsThatOfTheErrors) {
+  double sum = 0;
+  constexpr int pictures = 40;
+  for (int i = 0; i < pictures; ++i) {
+    BoardScene scene = plain_scene();
+    scene.X_CB = looking_at_board(0.75 + 0.004 * i, (45 + 0.3 * i) * degree, 9.0 * i * degree, 3 * degree);
+    scene.noise = 6;
+    scene.seed = static_cast<unsigned>(i + 1);
+    BoardTracker tracker(options_for(scene));
+    tracker.start_at(scene.X_CB);
+    const TrackedBoard seen = see(tracker, test::paint(scene, 2), 0);
+    ASSERT_TRUE(has_pose(seen)) << i;
+    const Eigen::AngleAxisd turn(scene.X_CB.linear() * seen.X_CB.linear().transpose());
+    Eigen::Matrix<double, 6, 1> error;
+    error << scene.X_CB.translation() - seen.X_CB.translation(), turn.angle() * turn.axis();
+    sum += error.dot(seen.fit.information.topLeftCorner<6, 6>() * error);
+  }
+  const double mean = sum / pictures;
+  // It is told on the safe side, since paper is not flat and no lens ideal: fewer than 6, but not none.
+  EXPECT_LT(mean, 9);
+  EXPECT_GT(mean, 0.3);
+}
+
 TEST(BoardTracker, TwoRunsGiveTheSamePoses) {
   BoardScene scene = plain_scene();
   std::array<Eigen::Isometry3d, 2> last;
