@@ -18,6 +18,12 @@ def read_rows(path):
         return list(csv.DictReader(lines))
 
 
+def vertices(model):
+    """Of a Wavefront OBJ."""
+    with open(model) as lines:
+        return [[float(word) for word in line.split()[1:4]] for line in lines if line.startswith("v ")]
+
+
 def median(values):
     return statistics.median(values) if values else math.nan
 

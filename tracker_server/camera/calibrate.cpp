@@ -19,7 +19,8 @@ Result<BoardSight> sight_board(const cv::Mat& picture_bgr, int squares) {
       const Eigen::Vector2d p = board->to_pixel(col, row);
       expected.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()));
     }
-  return sight_crossings(picture_bgr, squares, expected, 1.5F + 0.02F * static_cast<float>(cv::norm(expected[1] - expected[0])));
+  return sight_crossings(picture_bgr, squares, expected,
+                         1.5F + 0.02F * static_cast<float>(cv::norm(expected[1] - expected[0])));
 }
 
 Result<BoardSight> sight_crossings(const cv::Mat& picture_bgr, int squares, const std::vector<cv::Point2f>& expected_px,

@@ -14,7 +14,8 @@ namespace counterpart {
 DebugView debug_view(const Model& model, const Eigen::Isometry3d& X_CM, const Intrinsics& camera, const PoseFit& fit,
                      const FrameStamp& stamp);
 
-// Onto a picture (BGR). Green: accepted; red: an outlier; magenta: wrong contrast; yellow: ambiguous; grey: no edge there.
+// Onto a picture (BGR). Green: accepted; red: an outlier; magenta: wrong contrast; yellow: ambiguous; grey: no edge
+// there.
 void draw_debug_view(const DebugView& view, cv::Mat& picture_bgr);
 
 }  // namespace counterpart

@@ -10,9 +10,9 @@
 #include "tracker_server/camera/camera_json.hpp"
 #include "tracker_server/edges/pyramid.hpp"
 #include "tracker_server/pieces/piece_reader.hpp"
+#include "tracker_server/pipeline/debug_view.hpp"
 #include "tracker_server/pose/board_tracker.hpp"
 #include "tracker_server/pose/plane_pose.hpp"
-#include "tracker_server/pipeline/debug_view.hpp"
 #include "tracker_server/pose/projection.hpp"
 
 namespace counterpart {

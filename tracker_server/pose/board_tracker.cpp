@@ -40,6 +40,12 @@ const std::vector<FitRound> settle_rounds = {{1, 5, 2, 2}, {0, 5, 1, 3}, {0, 3, 
 // Squares that a pose may be brought back by, one or two at a time.
 constexpr int most_steps_back = 3;
 
+// Of the shares and supports of two poses, before one is taken for the other.
+constexpr double clearly_more = 0.05;
+
+// Of a pose that explains much less of the picture than the last one did.
+constexpr double largest_doubtful_rms_px = 0.4;
+
 constexpr int pyramid_levels = 3;
 
 // Of one picture's word about the focal length, how much is believed: its errors are alike from frame to frame.
@@ -93,7 +99,8 @@ cv::Rect part_with(const Model& model, const BoardGeometry& board, const Intrins
   const cv::Rect2f box = cv::boundingRect(points);
   // Whole cells of the coarsest level, so that the part's pyramid is the picture's.
   constexpr int cell = 1 << (pyramid_levels - 1);
-  const cv::Point low(static_cast<int>((box.x - room_px) / cell) * cell, static_cast<int>((box.y - room_px) / cell) * cell);
+  const cv::Point low(static_cast<int>((box.x - room_px) / cell) * cell,
+                      static_cast<int>((box.y - room_px) / cell) * cell);
   const cv::Point high(static_cast<int>(box.x + box.width + room_px), static_cast<int>(box.y + box.height + room_px));
   return cv::Rect(low, high) & whole;
 }
@@ -321,20 +328,47 @@ bool BoardTracker::doubtful(const Attempt& attempt) const {
   return attempt.check.support < 0.7 * last_support_ && !held_by_fixtures(attempt.fit);
 }
 
+// The best of the poses that lie by a square or two where the board seems to go on.
+std::optional<BoardTracker::Attempt> BoardTracker::one_step_back(const PictureView& view,
+                                                                 const Attempt& attempt) const {
+  std::optional<Attempt> best;
+  for (const Eigen::Vector2i& way : attempt.check.ways_back()) {
+    const Vector2d way_m = options_.board.square_size_m * way.cast<double>();
+    Attempt tried =
+        this->attempt(view, attempt.fit.X_CM * Eigen::Translation3d(way_m.x(), way_m.y(), 0), settle_rounds);
+    if (!best || tried.check.support > best->check.support) best = std::move(tried);
+  }
+  return best;
+}
+
 // A pose a few squares off shows on which side the board goes on: it is tried there.
 BoardTracker::Attempt BoardTracker::brought_back(const PictureView& view, Attempt attempt) const {
   for (int step = 0; step < most_steps_back && !attempt.good && attempt.check.shifted(); ++step) {
-    std::optional<Attempt> best;
-    for (const Eigen::Vector2i& way : attempt.check.ways_back()) {
-      const Vector2d way_m = options_.board.square_size_m * way.cast<double>();
-      Attempt tried =
-          this->attempt(view, attempt.fit.X_CM * Eigen::Translation3d(way_m.x(), way_m.y(), 0), settle_rounds);
-      if (!best || tried.check.support > best->check.support) best = std::move(tried);
-    }
-    if (!best || best->check.support <= attempt.check.support) break;
-    attempt = *std::move(best);
+    auto tried = one_step_back(view, attempt);
+    if (!tried || tried->check.support <= attempt.check.support) break;
+    attempt = *std::move(tried);
+  }
+  // Where the picture ends before the board does, only the outline tells a side that is missing from one that is
+  // covered.
+  if (attempt.good && attempt.check.may_be_shifted()) {
+    auto tried = one_step_back(view, attempt);
+    if (tried && tried->good && tried->check.support > attempt.check.support + clearly_more &&
+        outline_share(tried->fit) > outline_share(attempt.fit) + clearly_more)
+      return *std::move(tried);
   }
   return attempt;
+}
+
+double BoardTracker::outline_share(const PoseFit& fit) const {
+  int searched = 0, accepted = 0;
+  for (std::size_t i = 0; i < fit.hits.size(); ++i) {
+    const EdgeSample& sample = samples_[fit.samples[i]];
+    const bool outline = model_.segments[static_cast<std::size_t>(sample.segment)].outline;
+    if (!outline || fit.hits[i].verdict == EdgeVerdict::outside) continue;
+    ++searched;
+    if (fit.hits[i].verdict == EdgeVerdict::accepted) ++accepted;
+  }
+  return searched == 0 ? 0 : static_cast<double>(accepted) / searched;
 }
 
 // The usual case: the board is where it should be by now. Nothing if that is not beyond doubt.
@@ -343,8 +377,9 @@ std::optional<BoardTracker::Attempt> BoardTracker::follow_nearby(const cv::Mat& 
   const Isometry3d predicted = motion_.predict(time_ns);
   const cv::Rect part = part_with(model_, options_.board, camera_, predicted, picture_bgr.size());
   if (part.empty()) return std::nullopt;
-  Attempt tried = attempt(view_of(picture_bgr, part, pyramid_levels), predicted, usual_rounds);
-  if (!tried.good || doubtful(tried)) return std::nullopt;
+  const PictureView view = view_of(picture_bgr, part, pyramid_levels);
+  Attempt tried = attempt(view, predicted, usual_rounds);
+  if (!tried.good || doubtful(tried) || tried.check.may_be_shifted()) return std::nullopt;
   return tried;
 }
 
@@ -410,6 +445,7 @@ TrackedBoard BoardTracker::track(const cv::Mat& picture_bgr, std::int64_t time_n
     if (tried.good) found = std::move(tried);
   }
   bool relocated = false;
+  if (found && doubtful(*found) && found->fit.rms_px > largest_doubtful_rms_px) found.reset();
   if (!found || doubtful(*found)) {
     auto anew = find(picture_bgr, whole_view());
     if (anew && (!found || anew->check.support > found->check.support + 0.1)) {

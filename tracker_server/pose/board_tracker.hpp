@@ -69,7 +69,9 @@ class BoardTracker {
   Attempt attempt(const PictureView& view, const Eigen::Isometry3d& start, const std::vector<FitRound>& rounds) const;
   bool held_by_fixtures(const PoseFit& fit) const;
   bool doubtful(const Attempt& attempt) const;
+  std::optional<Attempt> one_step_back(const PictureView& view, const Attempt& attempt) const;
   Attempt brought_back(const PictureView& view, Attempt attempt) const;
+  double outline_share(const PoseFit& fit) const;
   std::optional<Attempt> follow_nearby(const cv::Mat& picture_bgr, std::int64_t time_ns) const;
   Attempt follow(const PictureView& view, std::int64_t time_ns) const;
   void forget_looks();

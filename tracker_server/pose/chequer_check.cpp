@@ -10,6 +10,7 @@ namespace counterpart {
 namespace {
 
 constexpr float unseen = -1e9F;
+constexpr double is_missing = 0.25;
 
 class BoardSampler {
  public:
@@ -66,12 +67,23 @@ struct Mean {
 }  // namespace
 
 bool ChequerCheck::goes_on(std::size_t side) const {
-  constexpr double follows = 0.5, is_missing = 0.25;
+  constexpr double follows = 0.5;
   return beyond[side] > follows && rim[side ^ 1U] < is_missing;
 }
 
+bool ChequerCheck::may_go_on(std::size_t side) const {
+  return goes_on(side) || (!beyond_seen[side] && rim_seen[side ^ 1U] && rim[side ^ 1U] < is_missing);
+}
+
+bool ChequerCheck::may_be_shifted() const {
+  for (std::size_t side = 0; side < 4; ++side)
+    if (may_go_on(side)) return true;
+  return false;
+}
+
 std::vector<Eigen::Vector2i> ChequerCheck::ways_back() const {
-  const Eigen::Vector2i way((goes_on(3) ? 1 : 0) - (goes_on(2) ? 1 : 0), (goes_on(0) ? 1 : 0) - (goes_on(1) ? 1 : 0));
+  const Eigen::Vector2i way((may_go_on(3) ? 1 : 0) - (may_go_on(2) ? 1 : 0),
+                            (may_go_on(0) ? 1 : 0) - (may_go_on(1) ? 1 : 0));
   if (way.isZero()) return {};
   if (way.x() != 0 && way.y() != 0) return {way};
   // One square along alone would change every colour.
@@ -118,6 +130,7 @@ ChequerCheck check_chequer(const cv::Mat1b& grey, const BoardGeometry& board, co
   constexpr int fewest_beside = 3;
   Mean support, contradicted;
   std::array<Mean, 4> rim, beyond;
+  std::array<int, 4> beyond_looked_at{};
   // Of the line of squares just inside each side and of the one just outside it, by place along the side.
   std::array<std::vector<double>, 4> inner, outer;
   for (auto* lines : {&inner, &outer}) lines->fill(std::vector<double>(static_cast<std::size_t>(n), 0.0));
@@ -130,11 +143,11 @@ ChequerCheck check_chequer(const cv::Mat1b& grey, const BoardGeometry& board, co
     const int line = s.from_left ? s.row : s.col;  // which line of squares the pair lies in
     const auto along = static_cast<std::size_t>(s.from_left ? s.col : s.row);
     const std::size_t first = s.from_left ? 0 : 2;
-    if (line == -1)
-      outer[first][along] = value;
-    else if (line == n)
-      outer[first + 1][along] = value;
-    else {
+    if (line == -1 || line == n) {
+      const std::size_t side = line == -1 ? first : first + 1;
+      outer[side][along] = value;
+      ++beyond_looked_at[side];
+    } else {
       add(support, value);
       add(contradicted, value < -clearly ? 1 : 0);
     }
@@ -151,6 +164,8 @@ ChequerCheck check_chequer(const cv::Mat1b& grey, const BoardGeometry& board, co
   check.contradicted = contradicted.value();
   for (std::size_t side = 0; side < 4; ++side) {
     check.rim[side] = rim[side].value();
+    check.rim_seen[side] = rim[side].count >= n / 2;
+    check.beyond_seen[side] = beyond_looked_at[side] >= n / 2;
     // Only where squares are seen inside can it be said whether they go on outside.
     for (std::size_t i = 0; i < inner[side].size(); ++i)
       if (inner[side][i] > clearly) add(beyond[side], outer[side][i]);

@@ -67,8 +67,8 @@ PoseFit fit_pose(const Pyramid& pyramid, const Model& model, const std::vector<E
                  const std::vector<std::size_t>& visible, const Intrinsics& camera, const Eigen::Isometry3d& start,
                  const std::vector<FitRound>& rounds, const FocalPrior& focal);
 
-// How an edge of an object looks now: the next picture's edge there has the same side bright. What lies behind an outline
-// and which faces meet in an edge change as an object turns, so nothing older is kept.
+// How an edge of an object looks now: the next picture's edge there has the same side bright. What lies behind an
+// outline and which faces meet in an edge change as an object turns, so nothing older is kept.
 void remember_look(const EdgeHit& hit, EdgeSample& sample);
 
 // Turned by a rotation vector about its own origin and moved, both in C.

@@ -38,7 +38,8 @@ class ObjectTracker {
 
   ObjectTracker(Predictor predictor, const Optimizer& optimizer) : predictor_(predictor), optimizer_(optimizer) {}
 
-  // Objects that keep their places to each other as they have them in the picture to start with; one alone moves freely.
+  // Objects that keep their places to each other as they have them in the picture to start with; one alone moves
+  // freely.
   void add(std::vector<ObjectToTrack> group);
 
   // In the order in which they were added. time_ns grows from call to call.

@@ -50,7 +50,8 @@ Result<ObjectGroups> objects_to_track(const ObjectArguments& arguments, const fs
     auto object = read_object(given, sequence);
     if (!object) return tl::make_unexpected(object.error());
     if (named(object->name) != objects.end() || object->name == main)
-      return failure(ErrorCode::invalid_argument, "--object " + given + ": there is a \"" + object->name + "\" already.");
+      return failure(ErrorCode::invalid_argument,
+                     "--object " + given + ": there is a \"" + object->name + "\" already.");
     objects.push_back(std::move(*object));
   }
   ObjectGroups groups;
@@ -64,9 +65,8 @@ Result<ObjectGroups> objects_to_track(const ObjectArguments& arguments, const fs
       }
       const auto object = named(name);
       if (object == objects.end())
-        return failure(ErrorCode::invalid_argument,
-                       "--rigid " + list + ": \"" + name + "\" is not " + main +
-                           " and no --object that is in no other rigid group.");
+        return failure(ErrorCode::invalid_argument, "--rigid " + list + ": \"" + name + "\" is not " + main +
+                                                        " and no --object that is in no other rigid group.");
       group.push_back(std::move(*object));
       objects.erase(object);
     }

@@ -22,7 +22,7 @@ struct ObjectGroups {
   std::vector<ObjectToTrack> with_main;
   std::vector<std::vector<ObjectToTrack>> others;
 };
-[[nodiscard]] Result<ObjectGroups> objects_to_track(const ObjectArguments& arguments, const std::filesystem::path& sequence,
-                                                    const std::string& main);
+[[nodiscard]] Result<ObjectGroups> objects_to_track(const ObjectArguments& arguments,
+                                                    const std::filesystem::path& sequence, const std::string& main);
 
 }  // namespace counterpart

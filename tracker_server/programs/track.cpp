@@ -112,7 +112,9 @@ Result<std::optional<Intrinsics>> intrinsics_of(const TrackArguments& arguments,
 
 const std::string corners_prefix = "corners=";
 
-bool has_corners(const TrackArguments& arguments) { return arguments.init.rfind(corners_prefix, 0) == 0; }
+bool has_corners(const TrackArguments& arguments) {
+  return arguments.init.rfind(corners_prefix, 0) == 0;
+}
 
 // The pose in the file that --init names, or beside the pictures; nothing if there is none and none is asked for.
 Result<std::optional<Eigen::Isometry3d>> start_pose(const TrackArguments& arguments) {
@@ -223,7 +225,8 @@ Result<Follow> follow_model(const TrackArguments& arguments, const Camera& camer
   groups->others.insert(groups->others.begin(), std::exchange(groups->with_main, {}));
   const auto tracker = object_tracker(*std::move(groups), predictor, optimizer);
   return [tracker, known = **intrinsics, debug = !arguments.debug.empty()](const Frame& frame) -> Sight {
-    auto poses = poses_of(tracker->track(build_pyramid(frame.image_bgr, 3), known, frame.stamp.capture_ns), frame.stamp);
+    auto poses =
+        poses_of(tracker->track(build_pyramid(frame.image_bgr, 3), known, frame.stamp.capture_ns), frame.stamp);
     Sight sight{poses.front().pose, known, {}, {}};
     sight.objects.assign(std::next(poses.begin()), poses.end());
     if (debug) add_debug_views(*tracker, known, frame.stamp, sight.debug);
@@ -274,7 +277,8 @@ Result<void> track(const TrackArguments& arguments) {
   if (!arguments.debug.empty()) {
     std::error_code error;
     std::filesystem::create_directories(arguments.debug, error);
-    if (error) return failure(ErrorCode::io, "Cannot make the folder " + arguments.debug + ": " + error.message() + ".");
+    if (error)
+      return failure(ErrorCode::io, "Cannot make the folder " + arguments.debug + ": " + error.message() + ".");
   }
   PoseLog poses;
   if (auto opened = poses.open(arguments.poses); !opened) return opened;

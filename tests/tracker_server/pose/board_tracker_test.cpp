@@ -230,8 +230,8 @@ TEST(BoardTracker, APictureWithoutABoardIsLost) {
   EXPECT_EQ(see(tracker, cv::Mat(4, 4, CV_8UC3, cv::Scalar::all(0)), 1).status, TrackStatus::lost);
 }
 
-// What the tracker says of its own certainty is true: the squared errors, in units of the covariance it tells, are as many
-// as there are unknowns (chi squared, 6 on average) over many pictures of other noise and other places.
+// What the tracker says of its own certainty is true: the squared errors, in units of the covariance it tells, are as
+// many as there are unknowns (chi squared, 6 on average) over many pictures of other noise and other places.
 TEST(BoardTracker, TheCovarianceIsThatOfTheErrors) {
   double sum = 0;
   constexpr int pictures = 40;

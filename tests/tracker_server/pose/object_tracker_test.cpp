@@ -54,7 +54,8 @@ TEST(ObjectTracker, FollowsTwoCubesThatMoveApart) {
     EXPECT_EQ(seen[0].name, "left");
     EXPECT_EQ(seen[1].name, "right");
     for (const TrackedObject& object : seen) ASSERT_EQ(object.status, TrackStatus::ok) << object.name << frame;
-    // The farthest corner is one that is not seen; stripes beside the edges move it by up to three pixels, a wrong edge by ten.
+    // The farthest corner is one that is not seen; stripes beside the edges move it by up to three pixels, a wrong edge
+    // by ten.
     EXPECT_LT(test::farthest_cube_corner_px(camera, seen[0].X_CM, left), 4.0) << frame;
     EXPECT_LT(test::farthest_cube_corner_px(camera, seen[1].X_CM, right), 4.0) << frame;
   }

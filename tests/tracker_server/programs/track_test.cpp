@@ -37,8 +37,8 @@ void write_camera(const Intrinsics& camera, const std::string& file) {
 void write_start(const Isometry3d& X_CM, const std::string& file) {
   const Eigen::Quaterniond q(X_CM.linear());
   const Vector3d t = X_CM.translation();
-  std::ofstream(file) << nlohmann::json{{"frame", 0},    {"tx", t.x()}, {"ty", t.y()}, {"tz", t.z()},
-                                        {"qw", q.w()},   {"qx", q.x()}, {"qy", q.y()}, {"qz", q.z()}};
+  std::ofstream(file) << nlohmann::json{{"frame", 0},  {"tx", t.x()}, {"ty", t.y()}, {"tz", t.z()},
+                                        {"qw", q.w()}, {"qx", q.x()}, {"qy", q.y()}, {"qz", q.z()}};
 }
 
 void write_picture(const cv::Mat& picture, const std::string& folder, int frame) {
@@ -103,8 +103,10 @@ Isometry3d pose_in(const std::map<std::string, std::string>& row) {
 TEST(Track, WritesThePosesOfTheBoardAndOfObjectsRigidToItOrNot) {
   const BoardFilm film;
   for (const bool rigid : {false, true}) {
-    std::vector<std::string> arguments = {"track",    film.folder.folder(), "--poses",  film.folder.path("out.csv"),
-                                          "--object", "box",                "--report", film.folder.path("report.json"),
+    std::vector<std::string> arguments = {"track",    film.folder.folder(),
+                                          "--poses",  film.folder.path("out.csv"),
+                                          "--object", "box",
+                                          "--report", film.folder.path("report.json"),
                                           "--debug",  film.folder.path("debug")};
     if (rigid) arguments.insert(arguments.end(), {"--rigid", "board,box"});
     const Outcome outcome = run("tracker_server", arguments);
@@ -118,9 +120,9 @@ TEST(Track, WritesThePosesOfTheBoardAndOfObjectsRigidToItOrNot) {
       ASSERT_EQ(box[i].at("status"), "ok");
       const Isometry3d X_CB = film.X_at(frame);
       // Of the whole board a tenth of a pixel is asked elsewhere; here it is enough that it is this board's pose.
-      EXPECT_LT(test::farthest_crossing_px(film.scene.board, film.scene.camera, pose_in(board[i]), film.scene.camera,
-                                           X_CB),
-                0.5);
+      EXPECT_LT(
+          test::farthest_crossing_px(film.scene.board, film.scene.camera, pose_in(board[i]), film.scene.camera, X_CB),
+          0.5);
       // A box of 65 pixels alone is told less well at its corners that are not seen.
       EXPECT_LT(test::farthest_cube_corner_px(film.scene.camera, pose_in(box[i]), X_CB * film.X_BM), rigid ? 0.5 : 3.0);
       EXPECT_TRUE(fs::exists(film.folder.path("debug/frame_0000" + std::to_string(frame) + ".png")));
@@ -160,8 +162,8 @@ TEST(Track, SaysWhatIsWrongWithObjects) {
 TEST(Track, NamesTheLineOfABadModel) {
   const BoardFilm film;
   const std::string model = film.folder.path("bad.obj");
-  const std::vector<std::string> arguments = {"track",   film.folder.folder(), "--poses", film.folder.path("out.csv"),
-                                              "--model", model};
+  const std::vector<std::string> arguments = {
+      "track", film.folder.folder(), "--poses", film.folder.path("out.csv"), "--model", model};
   for (const char* text : {"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "v 0 0 0\nv 1 0 nan\nv 0 1 0\nf 1 2 3\n",
                            "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"}) {
     std::ofstream(model) << text;
@@ -174,8 +176,8 @@ TEST(Track, NamesTheLineOfABadModel) {
 TEST(Track, RefusesIntrinsicsThatAreNoNumbers) {
   const BoardFilm film;
   for (const char* fx : {"NaN", "null", "-500", "1e400"}) {
-    std::ofstream(film.folder.path("camera.json"))
-        << "{\"width\":720,\"height\":576,\"fx\":" << fx << ",\"fy\":700,\"cx\":359.5,\"cy\":287.5,\"dist\":[0,0,0,0,0]}";
+    std::ofstream(film.folder.path("camera.json")) << "{\"width\":720,\"height\":576,\"fx\":" << fx
+                                                   << ",\"fy\":700,\"cx\":359.5,\"cy\":287.5,\"dist\":[0,0,0,0,0]}";
     const Outcome outcome =
         run("tracker_server", {"track", film.folder.folder(), "--poses", film.folder.path("out.csv")});
     EXPECT_NE(outcome.exit_code, 0) << fx;
@@ -209,8 +211,7 @@ TEST(Track, APictureOfAnotherSizeThanTheCamerasIsNamed) {
   cv::Mat half;
   cv::resize(cv::imread(second), half, {}, 0.5, 0.5, cv::INTER_AREA);
   cv::imwrite(second, half);
-  const Outcome known =
-      run("tracker_server", {"track", film.folder.folder(), "--poses", film.folder.path("out.csv")});
+  const Outcome known = run("tracker_server", {"track", film.folder.folder(), "--poses", film.folder.path("out.csv")});
   EXPECT_EQ(known.exit_code, 1);
   EXPECT_NE(known.err.find("frame_00001.png"), std::string::npos) << known.err;
 }

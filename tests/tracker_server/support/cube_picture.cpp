@@ -7,9 +7,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include <unistd.h>
-
 #include <opencv2/imgproc.hpp>
+#include <unistd.h>
 
 #include "tracker_server/pose/projection.hpp"
 
@@ -53,8 +52,7 @@ std::string cube_obj() {
 }
 
 Model cube_model() {
-  const auto path =
-      std::filesystem::temp_directory_path() / ("counterpart_cube_" + std::to_string(getpid()) + ".obj");
+  const auto path = std::filesystem::temp_directory_path() / ("counterpart_cube_" + std::to_string(getpid()) + ".obj");
   std::ofstream(path) << cube_obj();
   auto model = read_obj_model(path);
   std::filesystem::remove(path);

@@ -18,8 +18,8 @@ const std::array<Eigen::Vector3d, 8>& cube_corners();  // model frame
 std::string cube_obj();
 Model cube_model();
 
-// Painted four times as large and made smaller, so that edges are right to a few hundredths of a pixel. Stripes on every
-// face are edges that the model does not have. The picture (BGR) is of the camera's size.
+// Painted four times as large and made smaller, so that edges are right to a few hundredths of a pixel. Stripes on
+// every face are edges that the model does not have. The picture (BGR) is of the camera's size.
 void paint_cube(const Intrinsics& camera, const Eigen::Isometry3d& X_CM, cv::Mat& picture);
 
 Intrinsics camera_640x480();
