@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t most_sights = 30;
 constexpr double least_movement = 0.04;  // of the picture's width, from every sight there is
-constexpr double worst_rms_px = 1.0;
+constexpr double worst_calibration_rms_px = 1.0;
 constexpr double worst_focal_sigma = 0.02;  // of the focal length
 
 std::vector<cv::Point2f> crossings(const BoardGeometry& board, const Intrinsics& camera,
@@ -42,7 +42,7 @@ std::optional<Calibration> LensEstimator::add(const cv::Mat& picture_bgr, const 
   if (sights_.size() < next_calibration_) return std::nullopt;
   next_calibration_ = sights_.size() + std::max<std::size_t>(2, sights_.size() / 3);
   const auto calibration = calibrate(sights_, picture_bgr.cols, picture_bgr.rows, LensModel::k1);
-  if (!calibration || !(calibration->rms_px <= worst_rms_px)) return std::nullopt;
+  if (!calibration || !(calibration->rms_px <= worst_calibration_rms_px)) return std::nullopt;
   if (!(calibration->focal_sigma_px <= worst_focal_sigma * calibration->camera.fx)) return std::nullopt;
   return *calibration;
 }

@@ -121,6 +121,27 @@ TEST(BoardTracker, IsNeverOneSquareOffAfterAJump) {
 
 // The picture's middle runs in a circle at about 40 pixels a picture: what goes straight on misses by more than the
 // search reaches, and the next lines of the grid are nearer than the right ones.
+// The picture ends before the board does, so nothing shows that the squares would go on: only the side where they are
+// missing tells that a pose lies two squares off.
+TEST(BoardTracker, IsNotTwoSquaresOffWhereThePictureEndsBeforeTheBoard) {
+  BoardScene scene = plain_scene();
+  const Eigen::Isometry3d middle = scene.X_CB;
+  const double down_m = 0.24;
+  BoardTrackerOptions options = options_for(scene);
+  options.predictor = Predictor::none;
+  for (const double squares : {1.2, 1.6, 2.0, 2.4}) {
+    BoardTracker tracker(options);
+    scene.X_CB = Eigen::Translation3d(0, down_m - squares * scene.board.square_size_m, 0) * middle;
+    tracker.start_at(scene.X_CB);
+    ASSERT_TRUE(has_pose(see(tracker, test::paint(scene, 2), 0)));
+    scene.X_CB = Eigen::Translation3d(0, down_m, 0) * middle;
+    const TrackedBoard seen = see(tracker, test::paint(scene, 2), 1);
+    if (has_pose(seen)) {
+      EXPECT_LT(error_either_way_px(scene, seen), 2) << squares;
+    }
+  }
+}
+
 TEST(BoardTracker, FollowsAFastSweepWithoutSettlingOnTheNextLines) {
   BoardScene scene = plain_scene();
   scene.pieces = test::start_position(scene.board);
