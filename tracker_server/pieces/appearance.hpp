@@ -33,16 +33,22 @@ struct BoardLook {
 
 struct Reading {
   std::vector<CellSight> cells;
-  std::vector<float> evidence;  // octaves above an empty square; the threshold is the look's
+  // For a piece; the threshold is the look's. Octaves above an empty square, or the calibration's score.
+  std::vector<float> evidence;
   BoardLook look;
 };
+
+class SquareCalibration;
 
 // What is known of the pieces before looking.
 struct Foreknowledge {
   std::optional<int> playable_parity;  // otherwise the one that shows more pieces
   bool one_colour = false;             // only one side's pieces are real: shades among them are shadows
-  std::optional<double> threshold;     // as learned from squares whose contents were known
+  const SquareCalibration* calibration = nullptr;  // what was learned from squares whose contents were known
 };
+
+// The step between the usual colours of light and dark squares, grey levels.
+double colour_step(const std::vector<CellLook>& cells, int squares);
 
 Reading read_appearance(const std::vector<CellLook>& cells, int squares, const Foreknowledge& known);
 

@@ -43,19 +43,35 @@ bool one_side(const std::string& expected) {
 
 }  // namespace
 
-PieceReader::PieceReader(int squares) : squares_(squares) {
+PieceReader::PieceReader(int squares, ReadingMethod method) : squares_(squares), method_(method) {
   forget();
 }
 
 void PieceReader::forget() {
-  threshold_.reset();
+  calibration_ = {};
+  scan_rule_.reset();
   memory_.assign(static_cast<std::size_t>(squares_ * squares_), {});
   started_ = false;
 }
 
-PieceReading PieceReader::read(const BoardView& view, const FrameStamp& stamp) {
+Reading PieceReader::read_now(const std::vector<CellLook>& looks, const std::vector<double>& scan) {
+  if (method_ == ReadingMethod::appearance) {
+    if (calibration_.too_dark(colour_step(looks, squares_))) return Reading{std::vector<CellSight>(looks.size()), {}, {}};
+    return read_appearance(looks, squares_, {1, one_side(expected_), &calibration_});
+  }
+  // The light changes: the rule is learned anew from every picture in which the expected position allows it.
+  if (const auto rule = scan_rule(scan, squares_, expected_); rule && (rule->from_known || !scan_rule_)) {
+    scan_rule_ = rule;
+  }
+  Reading reading;
+  reading.cells.resize(looks.size());
+  if (scan_rule_) reading.cells = read_scan(scan, squares_, scan_rule_->threshold, scan_rule_->pieces_dark);
+  return reading;
+}
+
+PieceReading PieceReader::read(const BoardView& view, const FrameStamp& stamp, const std::vector<double>& scan) {
   const std::vector<CellLook> looks = look_at_cells(view, 1);
-  const Reading now = read_appearance(looks, squares_, {1, one_side(expected_), threshold_});
+  const Reading now = read_now(looks, scan);
   PieceReading result;
   result.covered_cells = covered_squares(looks, squares_);
   Occupancy& occupancy = result.occupancy;
@@ -86,38 +102,26 @@ PieceReading PieceReader::read(const BoardView& view, const FrameStamp& stamp) {
     occupancy.cells[i] = {memory.steady, memory.confidence};
   }
   occupancy.covered = covered > 0;
-  if (!occupancy.covered) learn(now);
+  if (!occupancy.covered && method_ == ReadingMethod::appearance) learn(looks);
   if (changed || occupancy.covered || stamp.capture_ns < changed_ns_) changed_ns_ = stamp.capture_ns;
   started_ = true;
   occupancy.stable_ns = stamp.capture_ns - changed_ns_;
   return result;
 }
 
-void PieceReader::learn(const Reading& now) {
+// The start position is the calibration, and every position after it.
+void PieceReader::learn(const std::vector<CellLook>& looks) {
   const int last = playable_squares(squares_);
   if (static_cast<int>(expected_.size()) != last) return;
-  int as_expected = 0;
-  double weakest_piece = 1e9, busiest_empty = -1e9;
+  const double step = colour_step(looks, squares_);
+  if (calibration_.too_dark(step)) return;
+  std::vector<KnownSquare> known;
   for (int square = 1; square <= last; ++square) {
     const Cell cell = cell_of_square(square, squares_);
-    const auto i = static_cast<std::size_t>(cell.row * squares_ + cell.col);
-    const bool empty = expected_[static_cast<std::size_t>(square - 1)] == 'e';
-    const CellReading seen = now.cells[i].reading;
-    if (seen == CellReading::unknown || empty != (seen == CellReading::empty)) continue;
-    ++as_expected;
-    const double evidence = now.evidence[i];
-    if (empty)
-      busiest_empty = std::max(busiest_empty, evidence);
-    else
-      weakest_piece = std::min(weakest_piece, evidence);
+    const CellLook& look = looks[static_cast<std::size_t>(cell.row * squares_ + cell.col)];
+    if (look.seen) known.push_back({features_of(look, step), expected_[static_cast<std::size_t>(square - 1)] != 'e'});
   }
-  constexpr double rate = 0.05;      // light changes over seconds
-  constexpr double clear_gap = 0.4;  // octaves
-  constexpr double mostly_right = 0.85;
-  const bool both = weakest_piece < 1e9 && busiest_empty > -1e9;
-  if (!both || as_expected < mostly_right * last || weakest_piece - busiest_empty < clear_gap) return;
-  const double middle = 0.5 * (weakest_piece + busiest_empty);
-  threshold_ = threshold_ ? *threshold_ + rate * (middle - *threshold_) : middle;
+  calibration_.learn(known, step);
 }
 
 bool PieceReader::looks_turned_round() const {

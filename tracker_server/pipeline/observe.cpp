@@ -9,7 +9,6 @@
 #include "protocol/vocabulary/pose_eigen.hpp"
 #include "tracker_server/camera/camera_json.hpp"
 #include "tracker_server/edges/pyramid.hpp"
-#include "tracker_server/pieces/piece_reader.hpp"
 #include "tracker_server/pose/board_tracker.hpp"
 #include "tracker_server/pose/plane_pose.hpp"
 #include "tracker_server/pose/projection.hpp"
@@ -176,7 +175,7 @@ Mask mask_of(const std::vector<bool>& covered, const BoardToPixel& to_pixel, con
 
 struct ObserveContext::State {
   explicit State(const ObserveOptions& given)
-      : options(given), tracker(tracker_options(given)), reader(given.board.squares) {
+      : options(given), tracker(tracker_options(given)), reader(given.board.squares, given.method) {
     if (given.corners_px) tracker.start_at(points_of(*given.corners_px));
   }
   ObserveOptions options;
@@ -220,7 +219,12 @@ Observation observe(const Frame& frame, ObserveContext& context) {
   const BoardToPixel to_pixel = board_to_pixel(seen, board);
   const BoardView view =
       timed(result.step_ms, "view", [&] { return view_board(frame.image_bgr, board.squares, to_pixel); });
-  const PieceReading reading = timed(result.step_ms, "pieces", [&] { return state.reader.read(view, frame.stamp); });
+  const PieceReading reading = timed(result.step_ms, "pieces", [&] {
+    std::vector<double> scan;
+    if (state.options.method == ReadingMethod::scan_segments)
+      scan = scan_values(pyramid.levels[0], board.squares, to_pixel);
+    return state.reader.read(view, frame.stamp, scan);
+  });
   result.debug.readings = letters_of(reading.occupancy);
   if (reading.occupancy.covered) result.mask = mask_of(reading.covered_cells, to_pixel, frame, board.squares);
   result.occupancy = reading.occupancy;
