@@ -157,19 +157,14 @@ float usual_scatter(const BoardView& view, std::size_t parity, const Colour& usu
 
 // How much of a square differs from the empty ones of its colour: a hand covers the corners too, a piece does not.
 void measure_cover(const BoardView& view, std::vector<CellLook>& cells) {
-  for (const std::size_t parity : {0U, 1U}) {
-    std::vector<Colour> grounds;
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      if (parity_of(i, view.squares) == parity && cells[i].seen) grounds.push_back(cells[i].ground);
-    if (grounds.size() < 4) continue;
-    const Colour usual = median_colour(grounds);
-    const float tolerance = std::max(18.0F, 2.5F * usual_scatter(view, parity, usual));
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      if (parity_of(i, view.squares) != parity || !cells[i].seen) continue;
-      int other = 0;
-      for (const Colour& sample : view.cells[i].samples) other += square_length(sample - usual) > tolerance * tolerance;
-      cells[i].full = static_cast<float>(other) / static_cast<float>(view.cells[i].samples.size());
-    }
+  const std::array<GroundLook, 2> grounds = ground_looks(view, cells);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const GroundLook& ground = grounds[parity_of(i, view.squares)];
+    if (!ground.known || !cells[i].seen) continue;
+    const float limit = ground.tolerance * ground.tolerance;
+    int other = 0;
+    for (const Colour& sample : view.cells[i].samples) other += square_length(sample - ground.usual) > limit;
+    cells[i].full = static_cast<float>(other) / static_cast<float>(view.cells[i].samples.size());
   }
 }
 
@@ -295,6 +290,19 @@ void learn_piece_colours(const std::vector<Colour>& pieces, double board_middle,
 }
 
 }  // namespace
+
+std::array<GroundLook, 2> ground_looks(const BoardView& view, const std::vector<CellLook>& cells) {
+  std::array<GroundLook, 2> looks;
+  for (const std::size_t parity : {0U, 1U}) {
+    std::vector<Colour> grounds;
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      if (parity_of(i, view.squares) == parity && cells[i].seen) grounds.push_back(cells[i].ground);
+    if (grounds.size() < 4) continue;
+    const Colour usual = median_colour(grounds);
+    looks[parity] = {usual, std::max(18.0F, 2.5F * usual_scatter(view, parity, usual)), true};
+  }
+  return looks;
+}
 
 std::vector<CellLook> look_at_cells(const BoardView& view, std::optional<int> played) {
   static const Zones zones;

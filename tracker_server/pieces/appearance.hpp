@@ -1,6 +1,7 @@
 // What stands on each square, from how it differs from the empty square round it: colour, and structure (rims, tops).
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -22,6 +23,16 @@ struct CellLook {
 
 // played: (row + col) % 2 of the squares that carry pieces, where known: of the others only the ground is looked at.
 std::vector<CellLook> look_at_cells(const BoardView& view, std::optional<int> played = std::nullopt);
+
+// How the empty squares of one colour look in a picture.
+struct GroundLook {
+  Colour usual;
+  float tolerance = 0;  // a sample that is farther from it is something else
+  bool known = false;   // false: too few of them are seen
+};
+
+// By (row + col) % 2.
+std::array<GroundLook, 2> ground_looks(const BoardView& view, const std::vector<CellLook>& cells);
 
 // What was learned from a picture; kept, it steadies the next one.
 struct BoardLook {

@@ -10,30 +10,6 @@ namespace {
 // A reading counts once it was the same so many frames in a row.
 constexpr int frames_to_believe = 3;
 
-// Squares that are never played on are always empty: what fills one of them is a hand or a thing, not a piece.
-constexpr float covered_share = 0.5F;
-
-std::vector<bool> covered_squares(const std::vector<CellLook>& looks, int squares) {
-  std::vector<bool> covered(looks.size(), false);
-  const auto index = [&](int row, int col) { return static_cast<std::size_t>(row * squares + col); };
-  for (int row = 0; row < squares; ++row)
-    for (int col = 0; col < squares; ++col)
-      if ((row + col) % 2 == 0 && looks[index(row, col)].seen)
-        covered[index(row, col)] = looks[index(row, col)].full > covered_share;
-  // A playable square is covered if two of those round it are.
-  for (int row = 0; row < squares; ++row)
-    for (int col = 0; col < squares; ++col) {
-      if ((row + col) % 2 == 0) continue;
-      int beside = 0;
-      for (const auto& [dr, dc] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
-        const int r = row + dr, c = col + dc;
-        if (r >= 0 && c >= 0 && r < squares && c < squares) beside += covered[index(r, c)];
-      }
-      covered[index(row, col)] = beside >= 2;
-    }
-  return covered;
-}
-
 // Whether all the real pieces that are expected belong to one side.
 bool one_side(const std::string& expected) {
   const bool dark = expected.find_first_of("bB") != std::string::npos;
@@ -73,20 +49,18 @@ PieceReading PieceReader::read(const BoardView& view, const FrameStamp& stamp, c
   const std::vector<CellLook> looks = look_at_cells(view, 1);
   const Reading now = read_now(looks, scan);
   PieceReading result;
-  result.covered_cells = covered_squares(looks, squares_);
+  result.cover = find_cover(view, looks);
   Occupancy& occupancy = result.occupancy;
   occupancy.stamp = stamp;
   occupancy.squares = squares_;
   occupancy.cells.resize(memory_.size());
 
   bool changed = !started_;
-  int covered = 0;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     CellMemory& memory = memory_[i];
-    covered += result.covered_cells[i];
     // A reflection, or a hand that hides nothing but this square: what looks empty need not be.
     const bool veiled = now.cells[i].reading == CellReading::empty && looks[i].full > covered_share;
-    if (result.covered_cells[i] || veiled) {
+    if (result.cover.cells[i] || veiled) {
       memory.times = 0;
       occupancy.cells[i] = {CellReading::unknown, 0};
       continue;
@@ -101,7 +75,7 @@ PieceReading PieceReader::read(const BoardView& view, const FrameStamp& stamp, c
     }
     occupancy.cells[i] = {memory.steady, memory.confidence};
   }
-  occupancy.covered = covered > 0;
+  occupancy.covered = result.cover.any;
   if (!occupancy.covered && method_ == ReadingMethod::appearance) learn(looks);
   if (changed || occupancy.covered || stamp.capture_ns < changed_ns_) changed_ns_ = stamp.capture_ns;
   started_ = true;

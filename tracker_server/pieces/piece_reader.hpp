@@ -9,6 +9,7 @@
 #include "tracker_server/pieces/appearance.hpp"
 #include "tracker_server/pieces/board_view.hpp"
 #include "tracker_server/pieces/calibration.hpp"
+#include "tracker_server/pieces/cover.hpp"
 #include "tracker_server/pieces/scan_segments.hpp"
 
 namespace counterpart {
@@ -20,7 +21,7 @@ enum class ReadingMethod {
 
 struct PieceReading {
   Occupancy occupancy;
-  std::vector<bool> covered_cells;  // by rows: a hand or a thing hides the square
+  Cover cover;
 };
 
 class PieceReader {
