@@ -82,7 +82,7 @@ class Player {
   std::optional<BoardState> mirror_;
   Eigen::Vector3d hand_after_{0, 0, 0};  // where the hand will be when all gestures are done
   double waited_s_ = 0;                  // since anything was done or the mirror asked for something
-  int moves_made_ = 0;  // those taken back are counted
+  int moves_made_ = 0;                   // those taken back are counted
   std::vector<PlayerMove> moves_;
   std::vector<IllegalKind> illegal_;
   int places_used_ = 0;

@@ -124,8 +124,7 @@ CellLook look_at(const CellPatch& patch, const Zones& zones, bool ground_only) {
   std::array<float, patch_side * patch_side> steep, different;
   std::size_t count = 0;
   for (std::size_t i : zones.whole) {
-    steep[count] =
-        square_length(samples[i + 1] - samples[i]) + square_length(samples[i + patch_side] - samples[i]);
+    steep[count] = square_length(samples[i + 1] - samples[i]) + square_length(samples[i + patch_side] - samples[i]);
     different[count++] = square_length(samples[i] - look.ground);
   }
   const auto quartile = [&](auto& values) {
@@ -326,8 +325,8 @@ Reading read_appearance(const std::vector<CellLook>& cells, int squares, const F
   reading.cells.resize(cells.size());
   const std::array<Colour, 2> usual = usual_grounds(cells, squares);
   const bool calibrated = known.calibration != nullptr && known.calibration->ready();
-  reading.evidence = calibrated ? scores_of(cells, squares, usual, *known.calibration)
-                                : evidence_of(cells, squares, usual);
+  reading.evidence =
+      calibrated ? scores_of(cells, squares, usual, *known.calibration) : evidence_of(cells, squares, usual);
 
   std::array<std::vector<float>, 2> by_parity;
   std::array<double, 2> busy{};

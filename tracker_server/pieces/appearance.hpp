@@ -53,8 +53,8 @@ class SquareCalibration;
 
 // What is known of the pieces before looking.
 struct Foreknowledge {
-  std::optional<int> playable_parity;  // otherwise the one that shows more pieces
-  bool one_colour = false;             // only one side's pieces are real: shades among them are shadows
+  std::optional<int> playable_parity;              // otherwise the one that shows more pieces
+  bool one_colour = false;                         // only one side's pieces are real: shades among them are shadows
   const SquareCalibration* calibration = nullptr;  // what was learned from squares whose contents were known
 };
 

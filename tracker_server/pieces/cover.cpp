@@ -1,6 +1,7 @@
 #include "tracker_server/pieces/cover.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <opencv2/imgproc.hpp>
 
@@ -36,18 +37,27 @@ bool beside_covered(const std::vector<bool>& covered, int squares, int row, int 
   return false;
 }
 
+// Less light of the same hue: what throws a shadow is elsewhere.
+bool in_shadow(const Colour& sample, const Colour& usual) {
+  constexpr float deepest = 0.3F, same_hue = 12;
+  if (!(sample.light < usual.light) || sample.light < deepest * usual.light) return false;
+  const float dimmed = sample.light / usual.light;
+  return std::hypot(sample.red_green - dimmed * usual.red_green, sample.warm_cold - dimmed * usual.warm_cold) <
+         same_hue;
+}
+
 // The samples of one square that differ from the empty board.
 void mark(const CellPatch& patch, const GroundLook& ground, cv::Mat1b part) {
   for (int i = 0; i < patch_side; ++i)
     for (int j = 0; j < patch_side; ++j) {
       const Colour& sample = patch.samples[static_cast<std::size_t>(i * patch_side + j)];
-      if (length(sample - ground.usual) > ground.tolerance) part(i, j) = 255;
+      if (length(sample - ground.usual) > ground.tolerance && !in_shadow(sample, ground.usual)) part(i, j) = 255;
     }
 }
 
 }  // namespace
 
-Cover find_cover(const BoardView& view, const std::vector<CellLook>& looks) {
+Cover find_cover(const BoardView& view, const std::vector<CellLook>& looks, const std::vector<bool>& was_empty) {
   const int n = view.squares;
   Cover cover;
   cover.cells = covered_cells(looks, n);
@@ -58,17 +68,18 @@ Cover find_cover(const BoardView& view, const std::vector<CellLook>& looks) {
   for (int row = 0; row < n; ++row)
     for (int col = 0; col < n; ++col) {
       const auto i = static_cast<std::size_t>(row * n + col);
-      // Beside what is covered, only squares that are never played on: on the others it could be a piece.
-      const bool played = (row + col) % 2 != 0;
-      const bool concerned = cover.cells[i] || (!played && beside_covered(cover.cells, n, row, col));
+      // Beside what is covered, only squares without a piece.
+      const bool no_piece = (row + col) % 2 == 0 || was_empty[i];
+      const bool concerned = cover.cells[i] || (no_piece && beside_covered(cover.cells, n, row, col));
       if (!concerned || !view.cells[i].seen) continue;
       const cv::Rect place(col * patch_side, row * patch_side, patch_side, patch_side);
       mark(view.cells[i], grounds[static_cast<std::size_t>(row + col) % 2], cover.samples(place));
     }
-  // A hand has no holes, and specks are noise.
-  const cv::Mat disc = cv::getStructuringElement(cv::MORPH_ELLIPSE, {5, 5});
-  cv::morphologyEx(cover.samples, cover.samples, cv::MORPH_CLOSE, disc);
-  cv::morphologyEx(cover.samples, cover.samples, cv::MORPH_OPEN, disc);
+  // Specks are noise; and a hand has no holes, though on the squares of one colour it may look like the board itself.
+  const cv::Mat speck = cv::getStructuringElement(cv::MORPH_ELLIPSE, {3, 3});
+  const cv::Mat square = cv::getStructuringElement(cv::MORPH_ELLIPSE, {patch_side + 3, patch_side + 3});
+  cv::morphologyEx(cover.samples, cover.samples, cv::MORPH_OPEN, speck);
+  cv::morphologyEx(cover.samples, cover.samples, cv::MORPH_CLOSE, square);
   return cover;
 }
 

@@ -20,6 +20,8 @@ struct Cover {
 // Share of a square that must differ from the empty board for it to count as hidden.
 constexpr float covered_share = 0.5F;
 
-Cover find_cover(const BoardView& view, const std::vector<CellLook>& looks);
+// was_empty: by rows, squares that were seen empty before; what now differs in one of them beside the cover belongs to
+// it.
+Cover find_cover(const BoardView& view, const std::vector<CellLook>& looks, const std::vector<bool>& was_empty);
 
 }  // namespace counterpart

@@ -32,7 +32,8 @@ void PieceReader::forget() {
 
 Reading PieceReader::read_now(const std::vector<CellLook>& looks, const std::vector<double>& scan) {
   if (method_ == ReadingMethod::appearance) {
-    if (calibration_.too_dark(colour_step(looks, squares_))) return Reading{std::vector<CellSight>(looks.size()), {}, {}};
+    if (calibration_.too_dark(colour_step(looks, squares_)))
+      return Reading{std::vector<CellSight>(looks.size()), {}, {}};
     return read_appearance(looks, squares_, {1, one_side(expected_), &calibration_});
   }
   // The light changes: the rule is learned anew from every picture in which the expected position allows it.
@@ -49,7 +50,9 @@ PieceReading PieceReader::read(const BoardView& view, const FrameStamp& stamp, c
   const std::vector<CellLook> looks = look_at_cells(view, 1);
   const Reading now = read_now(looks, scan);
   PieceReading result;
-  result.cover = find_cover(view, looks);
+  std::vector<bool> was_empty;
+  for (const CellMemory& memory : memory_) was_empty.push_back(memory.steady == CellReading::empty);
+  result.cover = find_cover(view, looks, was_empty);
   Occupancy& occupancy = result.occupancy;
   occupancy.stamp = stamp;
   occupancy.squares = squares_;

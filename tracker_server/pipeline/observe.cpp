@@ -1,7 +1,7 @@
 #include "tracker_server/pipeline/observe.hpp"
 
-#include <chrono>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -147,9 +147,12 @@ void draw_cover(const cv::Mat1b& part, const Vector2d& a, const Vector2d& b, con
   across << b - a, c - a;
   if (!(std::abs(across.determinant()) > 1e-6)) return;
   const Eigen::Matrix2d back = across.inverse();
-  const Vector2d low = a.cwiseMin(b).cwiseMin(c).cwiseMin(b + c - a), high = a.cwiseMax(b).cwiseMax(c).cwiseMax(b + c - a);
-  const int left = std::max(0, static_cast<int>(low.x())), right = std::min(hidden.cols - 1, static_cast<int>(high.x()) + 1);
-  const int top = std::max(0, static_cast<int>(low.y())), bottom = std::min(hidden.rows - 1, static_cast<int>(high.y()) + 1);
+  const Vector2d low = a.cwiseMin(b).cwiseMin(c).cwiseMin(b + c - a),
+                 high = a.cwiseMax(b).cwiseMax(c).cwiseMax(b + c - a);
+  const int left = std::max(0, static_cast<int>(low.x())),
+            right = std::min(hidden.cols - 1, static_cast<int>(high.x()) + 1);
+  const int top = std::max(0, static_cast<int>(low.y())),
+            bottom = std::min(hidden.rows - 1, static_cast<int>(high.y()) + 1);
   constexpr double seam = 0.03;  // squares are no parallelograms in the picture: they overlap rather than gape
   for (int y = top; y <= bottom; ++y)
     for (int x = left; x <= right; ++x) {

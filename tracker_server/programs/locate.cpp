@@ -59,7 +59,8 @@ LocatedBoard board_at(const std::array<double, 8>& corners_px, int squares) {
   return board;
 }
 
-std::vector<CellSight> read_squares(const cv::Mat& picture, const LocatedBoard& board, const LocateArguments& arguments) {
+std::vector<CellSight> read_squares(const cv::Mat& picture, const LocatedBoard& board,
+                                    const LocateArguments& arguments) {
   const auto to_pixel = [&](double column, double row) { return board.to_pixel(column, row); };
   const BoardView view = view_board(picture, arguments.squares, to_pixel);
   const Reading reading = read_appearance(look_at_cells(view), arguments.squares, {});

@@ -139,9 +139,10 @@ int run(const SuiteOptions& options) {
 int main(int argc, char** argv) {
   using namespace counterpart::bench;
   SuiteOptions options;
-  CLI::App app("Plays games between a simulated player on the stage and the system: camera pictures, tracker, reader, "
-               "referee and game in one process. The system sees pictures only; the truth is looked at afterwards.",
-               "game_suite");
+  CLI::App app(
+      "Plays games between a simulated player on the stage and the system: camera pictures, tracker, reader, "
+      "referee and game in one process. The system sees pictures only; the truth is looked at afterwards.",
+      "game_suite");
   app.add_option("--games", options.games, "how many")->check(CLI::Range(1, 100'000))->capture_default_str();
   app.add_option("--first", options.first, "number of the first game")->check(CLI::Range(0, 1'000'000));
   app.add_option("--moves", options.plies, "of both sides, a game")->check(CLI::Range(2, 500))->capture_default_str();

@@ -148,15 +148,14 @@ void draw_player(Dice& dice, Scenario& s, int plies, double length_s) {
     std::swap(kinds[i], kinds[static_cast<std::size_t>(dice.whole(0, static_cast<int>(i)))]);
   const int illegal = dice.whole(2, 3);
   for (int i = 0; i < illegal; ++i)
-    player.illegal_moves.push_back({1 + (i * his_moves + dice.whole(0, his_moves - 1)) / illegal,
-                                    kinds[static_cast<std::size_t>(i)]});
+    player.illegal_moves.push_back(
+        {1 + (i * his_moves + dice.whole(0, his_moves - 1)) / illegal, kinds[static_cast<std::size_t>(i)]});
   if (dice.chance(0.6)) player.knocks_over.push_back(dice.whole(1, his_moves - 1));
   if (dice.chance(0.5)) player.forgets_s = dice.from_to(1, 5);
   if (dice.chance(0.6)) {
     // Now and then for as long as somebody who thinks hard.
     const double for_s = dice.chance(0.15) ? 20 : dice.from_to(2, 5);
-    player.rests.push_back(
-        {dice.from_to(3, length_s), for_s, {dice.from_to(-0.12, 0.12), dice.from_to(-0.12, 0.12)}});
+    player.rests.push_back({dice.from_to(3, length_s), for_s, {dice.from_to(-0.12, 0.12), dice.from_to(-0.12, 0.12)}});
   }
 }
 

@@ -159,8 +159,7 @@ void Match::step() {
   for (const auto& [step, step_ms] : observation.step_ms) ms += step_ms;
   played_.observe_ms.push_back(static_cast<float>(ms));
   if (observation.occupancy)
-    played_.reading_ms.push_back(
-        static_cast<float>(observation.step_ms.at("view") + observation.step_ms.at("pieces")));
+    played_.reading_ms.push_back(static_cast<float>(observation.step_ms.at("view") + observation.step_ms.at("pieces")));
 
   GameInputs inputs;
   inputs.now_ns = now_ns_;
