@@ -81,7 +81,7 @@ BoardView view_board(const cv::Mat& picture_bgr, int squares, const BoardToPixel
       const Eigen::Vector2d &a = corner(row, col), &b = corner(row, col + 1), &c = corner(row + 1, col),
                             &d = corner(row + 1, col + 1);
       const double sample_px = std::min((b - a).norm(), (c - a).norm()) / patch_side;
-      const int half = std::clamp(static_cast<int>(std::lround(0.5 * sample_px)), 1, widest_half);
+      const int half = std::clamp(static_cast<int>(0.5 * sample_px), 1, widest_half);
       const auto inside = [&](const Eigen::Vector2d& p) {
         return p.x() >= half + 1 && p.y() >= half + 1 && p.x() < picture_bgr.cols - half - 1 &&
                p.y() < picture_bgr.rows - half - 1;
