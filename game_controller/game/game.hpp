@@ -23,7 +23,7 @@ struct GameOptions {
   std::string start_fen;                // empty: the usual start
   BoardGeometry board;                  // for the places of pieces
   double table_height_m = 0.74;
-  std::int64_t stable_ns = 320'000'000;  // a reading counts when it has not changed for so long
+  std::int64_t stable_ns = 200'000'000;  // a reading counts when it has not changed for so long
   std::int64_t settle_ns =
       1'200'000'000;  // an illegal position is announced when it has stood for so long (people move in steps)
   std::int64_t remind_ns = 8'000'000'000;  // asks again for removal, for putting right, after so long

@@ -54,6 +54,7 @@ class Film {
 
   const Scenario& scenario() const { return scenario_; }
   const World& world() const { return world_; }
+  const Player& player() const { return player_; }
 
  private:
   Film(const Scenario& scenario, std::unique_ptr<Room> room);

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <set>
 
-#include "stage/player/moves.hpp"
-
 namespace counterpart::stage {
 namespace {
 
@@ -26,6 +24,11 @@ std::vector<int> squares_of(const std::string& squares, Side real_side) {
     if (is_real_man(squares[i], real_side)) result.push_back(static_cast<int>(i) + 1);
   }
   return result;
+}
+
+// How many moves of the game so far are the real player's.
+std::size_t real_moves(const BoardState& state) {
+  return (state.moves.size() + (state.turn == state.virtual_side ? 1 : 0)) / 2;
 }
 
 std::vector<int> occupied(const World& world) {
@@ -135,6 +138,7 @@ void Player::play(const BoardState& state, World& world) {
   carry(world, piece, move.path);
   withdraw(world);
   ++moves_made_;
+  moves_.push_back(move);
 }
 
 // On the way to one piece the hand brushes the next, which tumbles half a square to the side, where nothing ever
@@ -227,6 +231,7 @@ bool Player::play_illegally(const World& world) {
   }
   if (chosen.size() < (two ? 2u : 1u)) return false;  // not possible here: at the next move then
   ++illegal_made_;
+  illegal_.push_back(planned.kind);
   pause(world, random(0.2, 0.5));
   for (const auto& [piece, square] : chosen) {
     reach_for(world, piece);
@@ -256,6 +261,7 @@ void Player::practise(World& world) {
 }
 
 void Player::make_board_show(const std::vector<int>& wanted, const World& world) {
+  if (mirror_) moves_.resize(std::min(moves_.size(), real_moves(*mirror_)));  // the rest is taken back
   const std::vector<int> standing = occupied(world);
   std::vector<int> missing, surplus;
   std::set_difference(wanted.begin(), wanted.end(), standing.begin(), standing.end(), std::back_inserter(missing));

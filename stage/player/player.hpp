@@ -10,6 +10,7 @@
 
 #include "protocol/vocabulary/game.hpp"
 #include "stage/player/gesture.hpp"
+#include "stage/player/moves.hpp"
 #include "stage/player/world.hpp"
 
 namespace counterpart::stage {
@@ -54,6 +55,10 @@ class Player {
   // Decides when his hands are free, then lets them move for dt.
   void step(double dt_s, World& world);
 
+  // For those who measure: what he meant to do, from the moment at which he begins it.
+  const std::vector<PlayerMove>& moves() const { return moves_; }  // legal ones that he has not taken back
+  const std::vector<IllegalKind>& illegal_moves() const { return illegal_; }
+
  private:
   void decide(World& world);
   void play(const BoardState& state, World& world);
@@ -77,7 +82,9 @@ class Player {
   std::optional<BoardState> mirror_;
   Eigen::Vector3d hand_after_{0, 0, 0};  // where the hand will be when all gestures are done
   double waited_s_ = 0;                  // since anything was done or the mirror asked for something
-  int moves_made_ = 0;
+  int moves_made_ = 0;                   // those taken back are counted
+  std::vector<PlayerMove> moves_;
+  std::vector<IllegalKind> illegal_;
   int places_used_ = 0;
   std::size_t illegal_made_ = 0;
   std::size_t rests_made_ = 0;

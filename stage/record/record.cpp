@@ -31,8 +31,8 @@ struct Seen {
   std::int64_t end_ns = 0;
 };
 
-Result<Seen> read_truth(std::istream& truth, std::size_t squares) {
-  Seen seen;
+Result<std::vector<BoardMoment>> read_truth(std::istream& truth) {
+  std::vector<BoardMoment> moments;
   std::string text;
   for (int number = 1; std::getline(truth, text); ++number) {
     const nlohmann::json line = nlohmann::json::parse(text, nullptr, false);
@@ -43,14 +43,24 @@ Result<Seen> read_truth(std::istream& truth, std::size_t squares) {
                                                 ": no capture_ns, occupancy and holds_piece; is this a truth.jsonl of "
                                                 "`stage`?");
     }
-    const std::string occupancy = dark_men(line["occupancy"].get<std::string>());
+    moments.push_back({line["capture_ns"].get<std::int64_t>(), line["occupancy"].get<std::string>(),
+                       line["holds_piece"].get<bool>()});
+  }
+  return moments;
+}
+
+Result<Seen> changes_of(const std::vector<BoardMoment>& moments, std::size_t squares) {
+  Seen seen;
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    const BoardMoment& moment = moments[i];
+    const std::string occupancy = dark_men(moment.occupancy);
     if (occupancy.size() != squares) {
-      return failure(ErrorCode::bad_format, "The truth, line " + std::to_string(number) + ": " +
+      return failure(ErrorCode::bad_format, "The truth, line " + std::to_string(i + 1) + ": " +
                                                 std::to_string(occupancy.size()) +
                                                 " squares, but the record's game has " + std::to_string(squares));
     }
-    seen.end_ns = line["capture_ns"].get<std::int64_t>();
-    if (line["holds_piece"].get<bool>()) continue;
+    seen.end_ns = moment.capture_ns;
+    if (moment.holds_piece) continue;
     if (!seen.occupancies.empty() && seen.occupancies.back() == occupancy) continue;
     seen.occupancies.push_back(occupancy);
     seen.since_ns.push_back(seen.end_ns);
@@ -112,11 +122,17 @@ std::vector<std::string> lasting_changes(const std::vector<std::string>& occupan
 }
 
 Result<RecordCheck> compare_record(std::string_view pdn, std::istream& truth) {
+  const Result<std::vector<BoardMoment>> seen = read_truth(truth);
+  if (!seen) return tl::make_unexpected(seen.error());
+  return compare_record(pdn, *seen);
+}
+
+Result<RecordCheck> compare_record(std::string_view pdn, const std::vector<BoardMoment>& moments) {
   const Result<std::vector<PdnGame>> games = read_pdn(pdn);
   if (!games) return failure(games.error().code, "The record: " + games.error().message);
   if (games->empty()) return failure(ErrorCode::bad_format, "The record holds no game.");
   const std::vector<std::string> recorded = replayed(games->back().record);
-  const Result<Seen> seen = read_truth(truth, recorded.front().size());
+  const Result<Seen> seen = changes_of(moments, recorded.front().size());
   if (!seen) return tl::make_unexpected(seen.error());
 
   RecordCheck check;

@@ -1,6 +1,7 @@
 // Does a game's record say what was really done on the board? Compares a PDN with the stage's truth.
 #pragma once
 
+#include <cstdint>
 #include <istream>
 #include <string>
 #include <string_view>
@@ -23,8 +24,19 @@ struct RecordCheck {
 // up again, is left out. Letters as in Truth::occupancy, kings as men: a king is crowned some time after his move.
 std::vector<std::string> lasting_changes(const std::vector<std::string>& occupancies);
 
-// pdn: its last game is compared; the real player has the dark pieces. truth: what `stage` writes as truth.jsonl. What
-// was done less than three seconds before the truth ends need not be in the record yet. Fails if either cannot be read.
+// How the real pieces stood at one moment.
+struct BoardMoment {
+  std::int64_t capture_ns = 0;
+  std::string occupancy;     // as Truth::occupancy
+  bool holds_piece = false;  // one is in the hand and stands nowhere
+};
+
+// pdn: its last game is compared; the real player has the dark pieces. seen: in order of time. What was done less than
+// three seconds before the last of them need not be in the record yet. Fails if the PDN cannot be read or is of another
+// size of board.
+[[nodiscard]] Result<RecordCheck> compare_record(std::string_view pdn, const std::vector<BoardMoment>& seen);
+
+// The same with what `stage` writes as truth.jsonl; fails if that cannot be read.
 [[nodiscard]] Result<RecordCheck> compare_record(std::string_view pdn, std::istream& truth);
 
 }  // namespace counterpart::stage

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "tracker_server/pieces/calibration.hpp"
+
 namespace counterpart {
 namespace {
 
@@ -16,6 +18,7 @@ constexpr double whole_radius = 0.45;
 constexpr double least_evidence = 0.9, usual_evidence = 1.3, most_evidence = 2.2;
 constexpr double clear_evidence = 2.7;
 constexpr double undecided = 0.12;
+constexpr double undecided_score = 0.2;
 
 // An empty square is never taken for quieter than these shares of the step between light and dark squares: on a clean,
 // bright board a smear would stand out as much as a piece.
@@ -80,71 +83,88 @@ struct Zones {
       for (int col = 0; col < patch_side; ++col) {
         const double y = patch_place(row), x = patch_place(col), r = std::hypot(x, y);
         const auto i = static_cast<std::size_t>(row * patch_side + col);
-        if (std::abs(x) > corner_zone && std::abs(y) > corner_zone) corners.push_back(i);
-        if (r < middle_radius) middle.push_back(i);
+        // Neighbours have pixels in common: every other one is enough for a median.
+        const bool every_other = (row + col) % 2 == 0;
+        if (every_other && std::abs(x) > corner_zone && std::abs(y) > corner_zone) corners.push_back(i);
+        if (every_other && r < middle_radius) middle.push_back(i);
         // One short of the last row and column: steepness looks one sample ahead.
         if (r < whole_radius && row + 1 < patch_side && col + 1 < patch_side) whole.push_back(i);
       }
   }
 };
 
+// The median of each channel over a few samples.
+Colour median_colour(const std::vector<Colour>& samples, const std::vector<std::size_t>& zone) {
+  std::array<std::array<float, patch_side * patch_side>, 3> channels;
+  for (std::size_t i = 0; i < zone.size(); ++i) {
+    const Colour& c = samples[zone[i]];
+    channels[0][i] = c.light;
+    channels[1][i] = c.red_green;
+    channels[2][i] = c.warm_cold;
+  }
+  const auto middle = static_cast<std::ptrdiff_t>(zone.size() / 2);
+  for (auto& channel : channels)
+    std::nth_element(channel.begin(), channel.begin() + middle, channel.begin() + std::ssize(zone));
+  return {channels[0][zone.size() / 2], channels[1][zone.size() / 2], channels[2][zone.size() / 2]};
+}
+
 CellLook look_at(const CellPatch& patch, const Zones& zones, bool ground_only) {
   CellLook look;
   look.seen = patch.seen;
   if (!patch.seen) return look;
   const auto& samples = patch.samples;
-  std::vector<Colour> colours;
-  for (std::size_t i : zones.corners) colours.push_back(samples[i]);
-  look.ground = median_colour(colours);
+  look.ground = median_colour(samples, zones.corners);
   if (ground_only) return look;
-  colours.clear();
-  int burnt = 0;
-  for (std::size_t i : zones.middle) {
-    colours.push_back(samples[i]);
-    burnt += samples[i].light > 250;
-  }
-  look.middle = median_colour(colours);
+  look.middle = median_colour(samples, zones.middle);
+  const auto burnt =
+      std::count_if(zones.middle.begin(), zones.middle.end(), [&](std::size_t i) { return samples[i].light > 250; });
   look.glare = static_cast<float>(burnt) / static_cast<float>(zones.middle.size());
 
   // Squares keep the order, so that one root a quantile is enough.
-  std::vector<float> steep, different;
-  steep.reserve(zones.whole.size());
-  different.reserve(zones.whole.size());
+  std::array<float, patch_side * patch_side> steep, different;
+  std::size_t count = 0;
   for (std::size_t i : zones.whole) {
-    steep.push_back(square_length(samples[i + 1] - samples[i]) + square_length(samples[i + patch_side] - samples[i]));
-    different.push_back(square_length(samples[i] - look.ground));
+    steep[count] = square_length(samples[i + 1] - samples[i]) + square_length(samples[i + patch_side] - samples[i]);
+    different[count++] = square_length(samples[i] - look.ground);
   }
-  look.structure = std::sqrt(quantile(steep, 0.75));
-  look.difference = std::sqrt(quantile(different, 0.75));
+  const auto quartile = [&](auto& values) {
+    const auto place = values.begin() + static_cast<std::ptrdiff_t>(0.75 * static_cast<double>(count - 1));
+    std::nth_element(values.begin(), place, values.begin() + static_cast<std::ptrdiff_t>(count));
+    return *place;
+  };
+  look.structure = std::sqrt(quartile(steep));
+  look.difference = std::sqrt(quartile(different));
   return look;
-}
-
-// How much of a square differs from the empty ones of its colour: a hand covers the corners too, a piece does not.
-void measure_cover(const BoardView& view, std::vector<CellLook>& cells) {
-  for (int parity : {0, 1}) {
-    std::vector<Colour> grounds;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      const int row = static_cast<int>(i) / view.squares, col = static_cast<int>(i) % view.squares;
-      if ((row + col) % 2 == parity && cells[i].seen) grounds.push_back(cells[i].ground);
-    }
-    if (grounds.size() < 4) continue;
-    const Colour usual = median_colour(grounds);
-    std::vector<float> spread;
-    for (const Colour& ground : grounds) spread.push_back(length(ground - usual));
-    const float tolerance = std::max(18.0F, 3 * median(spread));
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      const int row = static_cast<int>(i) / view.squares, col = static_cast<int>(i) % view.squares;
-      if ((row + col) % 2 != parity || !cells[i].seen) continue;
-      int other = 0;
-      for (const Colour& sample : view.cells[i].samples) other += square_length(sample - usual) > tolerance * tolerance;
-      cells[i].full = static_cast<float>(other) / static_cast<float>(view.cells[i].samples.size());
-    }
-  }
 }
 
 std::size_t parity_of(std::size_t cell, int squares) {
   const auto n = static_cast<std::size_t>(squares);
   return (cell / n + cell % n) % 2;
+}
+
+// How far the samples of this parity's squares usually are from their usual colour: shading, grain, noise.
+float usual_scatter(const BoardView& view, std::size_t parity, const Colour& usual) {
+  constexpr std::size_t every = 13;  // enough of them, and all over the square
+  std::vector<float> scatter;
+  for (std::size_t i = 0; i < view.cells.size(); ++i) {
+    if (parity_of(i, view.squares) != parity || !view.cells[i].seen) continue;
+    const auto& samples = view.cells[i].samples;
+    for (std::size_t k = 0; k < samples.size(); k += every) scatter.push_back(length(samples[k] - usual));
+  }
+  return median(scatter);
+}
+
+// How much of a square differs from the empty ones of its colour: a hand covers the corners too, a piece does not.
+void measure_cover(const BoardView& view, std::vector<CellLook>& cells) {
+  const std::array<GroundLook, 2> grounds = ground_looks(view, cells);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const GroundLook& ground = grounds[parity_of(i, view.squares)];
+    if (!ground.known || !cells[i].seen) continue;
+    const float limit = ground.tolerance * ground.tolerance;
+    int other = 0;
+    for (const Colour& sample : view.cells[i].samples) other += square_length(sample - ground.usual) > limit;
+    cells[i].full = static_cast<float>(other) / static_cast<float>(view.cells[i].samples.size());
+  }
 }
 
 std::array<Colour, 2> usual_grounds(const std::vector<CellLook>& cells, int squares) {
@@ -185,6 +205,17 @@ std::vector<float> evidence_of(const std::vector<CellLook>& cells, int squares, 
     }
   }
   return evidence;
+}
+
+std::vector<float> scores_of(const std::vector<CellLook>& cells, int squares, const std::array<Colour, 2>& usual,
+                             const SquareCalibration& calibration) {
+  std::vector<float> scores(cells.size(), -1);
+  const double step = length(usual[0] - usual[1]);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (!cells[i].seen || only_glare(cells[i], usual[parity_of(i, squares)])) continue;
+    scores[i] = static_cast<float>(calibration.score(features_of(cells[i], step)));
+  }
+  return scores;
 }
 
 // The widest gap between the two groups, within what is sensible. Without a gap, all is one group: if none of it looks
@@ -259,6 +290,19 @@ void learn_piece_colours(const std::vector<Colour>& pieces, double board_middle,
 
 }  // namespace
 
+std::array<GroundLook, 2> ground_looks(const BoardView& view, const std::vector<CellLook>& cells) {
+  std::array<GroundLook, 2> looks;
+  for (const std::size_t parity : {0U, 1U}) {
+    std::vector<Colour> grounds;
+    for (std::size_t i = 0; i < cells.size(); ++i)
+      if (parity_of(i, view.squares) == parity && cells[i].seen) grounds.push_back(cells[i].ground);
+    if (grounds.size() < 4) continue;
+    const Colour usual = median_colour(grounds);
+    looks[parity] = {usual, std::max(18.0F, 2.5F * usual_scatter(view, parity, usual)), true};
+  }
+  return looks;
+}
+
 std::vector<CellLook> look_at_cells(const BoardView& view, std::optional<int> played) {
   static const Zones zones;
   std::vector<CellLook> cells;
@@ -271,11 +315,18 @@ std::vector<CellLook> look_at_cells(const BoardView& view, std::optional<int> pl
   return cells;
 }
 
+double colour_step(const std::vector<CellLook>& cells, int squares) {
+  const std::array<Colour, 2> usual = usual_grounds(cells, squares);
+  return length(usual[0] - usual[1]);
+}
+
 Reading read_appearance(const std::vector<CellLook>& cells, int squares, const Foreknowledge& known) {
   Reading reading;
   reading.cells.resize(cells.size());
   const std::array<Colour, 2> usual = usual_grounds(cells, squares);
-  reading.evidence = evidence_of(cells, squares, usual);
+  const bool calibrated = known.calibration != nullptr && known.calibration->ready();
+  reading.evidence =
+      calibrated ? scores_of(cells, squares, usual, *known.calibration) : evidence_of(cells, squares, usual);
 
   std::array<std::vector<float>, 2> by_parity;
   std::array<double, 2> busy{};
@@ -288,12 +339,13 @@ Reading read_appearance(const std::vector<CellLook>& cells, int squares, const F
   BoardLook& look = reading.look;
   look.playable_parity = known.playable_parity.value_or(busy[0] > busy[1] ? 0 : 1);
   const auto played = static_cast<std::size_t>(look.playable_parity);
-  look.threshold = known.threshold ? *known.threshold : threshold_of(by_parity[played]);
+  look.threshold = calibrated ? 0 : threshold_of(by_parity[played]);
+  const double doubt = calibrated ? undecided_score : undecided;
   const double board_middle = 0.5 * (usual[0].light + usual[1].light);
 
   std::vector<Colour> pieces;
   for (std::size_t i = 0; i < cells.size(); ++i)
-    if (cells[i].seen && parity_of(i, squares) == played && reading.evidence[i] > look.threshold + undecided)
+    if (cells[i].seen && parity_of(i, squares) == played && reading.evidence[i] > look.threshold + doubt)
       pieces.push_back(cells[i].middle);
   learn_piece_colours(pieces, board_middle, known.one_colour, look);
 
@@ -306,7 +358,7 @@ Reading read_appearance(const std::vector<CellLook>& cells, int squares, const F
     }
     const double above = reading.evidence[i] - look.threshold;
     sight.confidence = static_cast<float>(std::min(1.0, std::abs(above)));
-    if (std::abs(above) < undecided || (above < 0 && cells[i].glare > 0.8F)) {
+    if (std::abs(above) < doubt || (above < 0 && cells[i].glare > 0.8F)) {
       sight.reading = CellReading::unknown;
     } else if (above < 0) {
       sight.reading = CellReading::empty;

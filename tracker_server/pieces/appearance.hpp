@@ -1,6 +1,7 @@
 // What stands on each square, from how it differs from the empty square round it: colour, and structure (rims, tops).
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -23,6 +24,16 @@ struct CellLook {
 // played: (row + col) % 2 of the squares that carry pieces, where known: of the others only the ground is looked at.
 std::vector<CellLook> look_at_cells(const BoardView& view, std::optional<int> played = std::nullopt);
 
+// How the empty squares of one colour look in a picture.
+struct GroundLook {
+  Colour usual;
+  float tolerance = 0;  // a sample that is farther from it is something else
+  bool known = false;   // false: too few of them are seen
+};
+
+// By (row + col) % 2.
+std::array<GroundLook, 2> ground_looks(const BoardView& view, const std::vector<CellLook>& cells);
+
 // What was learned from a picture; kept, it steadies the next one.
 struct BoardLook {
   int playable_parity = 1;  // (row + col) % 2 of the squares that carry pieces
@@ -33,16 +44,22 @@ struct BoardLook {
 
 struct Reading {
   std::vector<CellSight> cells;
-  std::vector<float> evidence;  // octaves above an empty square; the threshold is the look's
+  // For a piece; the threshold is the look's. Octaves above an empty square, or the calibration's score.
+  std::vector<float> evidence;
   BoardLook look;
 };
 
+class SquareCalibration;
+
 // What is known of the pieces before looking.
 struct Foreknowledge {
-  std::optional<int> playable_parity;  // otherwise the one that shows more pieces
-  bool one_colour = false;             // only one side's pieces are real: shades among them are shadows
-  std::optional<double> threshold;     // as learned from squares whose contents were known
+  std::optional<int> playable_parity;              // otherwise the one that shows more pieces
+  bool one_colour = false;                         // only one side's pieces are real: shades among them are shadows
+  const SquareCalibration* calibration = nullptr;  // what was learned from squares whose contents were known
 };
+
+// The step between the usual colours of light and dark squares, grey levels.
+double colour_step(const std::vector<CellLook>& cells, int squares);
 
 Reading read_appearance(const std::vector<CellLook>& cells, int squares, const Foreknowledge& known);
 

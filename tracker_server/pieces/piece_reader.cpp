@@ -10,30 +10,6 @@ namespace {
 // A reading counts once it was the same so many frames in a row.
 constexpr int frames_to_believe = 3;
 
-// Squares that are never played on are always empty: what fills one of them is a hand or a thing, not a piece.
-constexpr float covered_share = 0.5F;
-
-std::vector<bool> covered_squares(const std::vector<CellLook>& looks, int squares) {
-  std::vector<bool> covered(looks.size(), false);
-  const auto index = [&](int row, int col) { return static_cast<std::size_t>(row * squares + col); };
-  for (int row = 0; row < squares; ++row)
-    for (int col = 0; col < squares; ++col)
-      if ((row + col) % 2 == 0 && looks[index(row, col)].seen)
-        covered[index(row, col)] = looks[index(row, col)].full > covered_share;
-  // A playable square is covered if two of those round it are.
-  for (int row = 0; row < squares; ++row)
-    for (int col = 0; col < squares; ++col) {
-      if ((row + col) % 2 == 0) continue;
-      int beside = 0;
-      for (const auto& [dr, dc] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
-        const int r = row + dr, c = col + dc;
-        if (r >= 0 && c >= 0 && r < squares && c < squares) beside += covered[index(r, c)];
-      }
-      covered[index(row, col)] = beside >= 2;
-    }
-  return covered;
-}
-
 // Whether all the real pieces that are expected belong to one side.
 bool one_side(const std::string& expected) {
   const bool dark = expected.find_first_of("bB") != std::string::npos;
@@ -43,34 +19,51 @@ bool one_side(const std::string& expected) {
 
 }  // namespace
 
-PieceReader::PieceReader(int squares) : squares_(squares) {
+PieceReader::PieceReader(int squares, ReadingMethod method) : squares_(squares), method_(method) {
   forget();
 }
 
 void PieceReader::forget() {
-  threshold_.reset();
+  calibration_ = {};
+  scan_rule_.reset();
   memory_.assign(static_cast<std::size_t>(squares_ * squares_), {});
   started_ = false;
 }
 
-PieceReading PieceReader::read(const BoardView& view, const FrameStamp& stamp) {
+Reading PieceReader::read_now(const std::vector<CellLook>& looks, const std::vector<double>& scan) {
+  if (method_ == ReadingMethod::appearance) {
+    if (calibration_.too_dark(colour_step(looks, squares_)))
+      return Reading{std::vector<CellSight>(looks.size()), {}, {}};
+    return read_appearance(looks, squares_, {1, one_side(expected_), &calibration_});
+  }
+  // The light changes: the rule is learned anew from every picture in which the expected position allows it.
+  if (const auto rule = scan_rule(scan, squares_, expected_); rule && (rule->from_known || !scan_rule_)) {
+    scan_rule_ = rule;
+  }
+  Reading reading;
+  reading.cells.resize(looks.size());
+  if (scan_rule_) reading.cells = read_scan(scan, squares_, scan_rule_->threshold, scan_rule_->pieces_dark);
+  return reading;
+}
+
+PieceReading PieceReader::read(const BoardView& view, const FrameStamp& stamp, const std::vector<double>& scan) {
   const std::vector<CellLook> looks = look_at_cells(view, 1);
-  const Reading now = read_appearance(looks, squares_, {1, one_side(expected_), threshold_});
+  const Reading now = read_now(looks, scan);
   PieceReading result;
-  result.covered_cells = covered_squares(looks, squares_);
+  std::vector<bool> was_empty;
+  for (const CellMemory& memory : memory_) was_empty.push_back(memory.steady == CellReading::empty);
+  result.cover = find_cover(view, looks, was_empty);
   Occupancy& occupancy = result.occupancy;
   occupancy.stamp = stamp;
   occupancy.squares = squares_;
   occupancy.cells.resize(memory_.size());
 
   bool changed = !started_;
-  int covered = 0;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     CellMemory& memory = memory_[i];
-    covered += result.covered_cells[i];
     // A reflection, or a hand that hides nothing but this square: what looks empty need not be.
     const bool veiled = now.cells[i].reading == CellReading::empty && looks[i].full > covered_share;
-    if (result.covered_cells[i] || veiled) {
+    if (result.cover.cells[i] || veiled) {
       memory.times = 0;
       occupancy.cells[i] = {CellReading::unknown, 0};
       continue;
@@ -85,39 +78,27 @@ PieceReading PieceReader::read(const BoardView& view, const FrameStamp& stamp) {
     }
     occupancy.cells[i] = {memory.steady, memory.confidence};
   }
-  occupancy.covered = covered > 0;
-  if (!occupancy.covered) learn(now);
+  occupancy.covered = result.cover.any;
+  if (!occupancy.covered && method_ == ReadingMethod::appearance) learn(looks);
   if (changed || occupancy.covered || stamp.capture_ns < changed_ns_) changed_ns_ = stamp.capture_ns;
   started_ = true;
   occupancy.stable_ns = stamp.capture_ns - changed_ns_;
   return result;
 }
 
-void PieceReader::learn(const Reading& now) {
+// The start position is the calibration, and every position after it.
+void PieceReader::learn(const std::vector<CellLook>& looks) {
   const int last = playable_squares(squares_);
   if (static_cast<int>(expected_.size()) != last) return;
-  int as_expected = 0;
-  double weakest_piece = 1e9, busiest_empty = -1e9;
+  const double step = colour_step(looks, squares_);
+  if (calibration_.too_dark(step)) return;
+  std::vector<KnownSquare> known;
   for (int square = 1; square <= last; ++square) {
     const Cell cell = cell_of_square(square, squares_);
-    const auto i = static_cast<std::size_t>(cell.row * squares_ + cell.col);
-    const bool empty = expected_[static_cast<std::size_t>(square - 1)] == 'e';
-    const CellReading seen = now.cells[i].reading;
-    if (seen == CellReading::unknown || empty != (seen == CellReading::empty)) continue;
-    ++as_expected;
-    const double evidence = now.evidence[i];
-    if (empty)
-      busiest_empty = std::max(busiest_empty, evidence);
-    else
-      weakest_piece = std::min(weakest_piece, evidence);
+    const CellLook& look = looks[static_cast<std::size_t>(cell.row * squares_ + cell.col)];
+    if (look.seen) known.push_back({features_of(look, step), expected_[static_cast<std::size_t>(square - 1)] != 'e'});
   }
-  constexpr double rate = 0.05;      // light changes over seconds
-  constexpr double clear_gap = 0.4;  // octaves
-  constexpr double mostly_right = 0.85;
-  const bool both = weakest_piece < 1e9 && busiest_empty > -1e9;
-  if (!both || as_expected < mostly_right * last || weakest_piece - busiest_empty < clear_gap) return;
-  const double middle = 0.5 * (weakest_piece + busiest_empty);
-  threshold_ = threshold_ ? *threshold_ + rate * (middle - *threshold_) : middle;
+  calibration_.learn(known, step);
 }
 
 bool PieceReader::looks_turned_round() const {

@@ -27,21 +27,26 @@ std::vector<double> scan_values(const cv::Mat1b& grey, int squares, const BoardT
   return values;
 }
 
-std::optional<double> scan_threshold(const std::vector<double>& values, int squares, const std::string& expected) {
+std::optional<ScanRule> scan_rule(const std::vector<double>& values, int squares, const std::string& expected,
+                                  int parity) {
   std::vector<double> playable, empty, taken;
-  for (int square = 1; square <= playable_squares(squares); ++square) {
-    const Cell cell = cell_of_square(square, squares);
-    const double value = values[static_cast<std::size_t>(cell.row * squares + cell.col)];
-    if (value < 0) continue;
-    playable.push_back(value);
-    const auto i = static_cast<std::size_t>(square - 1);
-    if (i < expected.size()) (expected[i] == 'e' ? empty : taken).push_back(value);
-  }
+  for (int row = 0; row < squares; ++row)
+    for (int col = 0; col < squares; ++col) {
+      const double value = values[static_cast<std::size_t>(row * squares + col)];
+      if ((row + col) % 2 != parity || value < 0) continue;
+      playable.push_back(value);
+      const auto square = square_of_cell({row, col}, squares);
+      const std::size_t i = square ? static_cast<std::size_t>(*square - 1) : expected.size();
+      if (i < expected.size()) (expected[i] == 'e' ? empty : taken).push_back(value);
+    }
   const auto median = [](std::vector<double>& v) {
     std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
     return v[v.size() / 2];
   };
-  if (empty.size() >= 3 && taken.size() >= 3) return 0.5 * (median(empty) + median(taken));
+  if (empty.size() >= 3 && taken.size() >= 3) {
+    const double of_empty = median(empty), of_taken = median(taken);
+    return ScanRule{0.5 * (of_empty + of_taken), of_taken < of_empty, true};
+  }
 
   // Without a known set-up: the split that leaves the two groups tightest (Otsu).
   if (playable.size() < 8) return std::nullopt;
@@ -58,16 +63,17 @@ std::optional<double> scan_threshold(const std::vector<double>& values, int squa
       threshold = 0.5 * (playable[i - 1] + playable[i]);
     }
   }
-  return threshold;
+  return ScanRule{threshold, true, false};
 }
 
-std::vector<CellSight> read_scan(const std::vector<double>& values, int squares, double threshold, bool pieces_dark) {
+std::vector<CellSight> read_scan(const std::vector<double>& values, int squares, double threshold, bool pieces_dark,
+                                 int parity) {
   std::vector<CellSight> cells(values.size());
   for (int row = 0; row < squares; ++row)
     for (int col = 0; col < squares; ++col) {
       const auto i = static_cast<std::size_t>(row * squares + col);
       if (values[i] < 0) continue;
-      const bool playable = (row + col) % 2 != 0;
+      const bool playable = (row + col) % 2 == parity;
       const bool piece = playable && (values[i] <= threshold) == pieces_dark;
       cells[i].reading = piece ? (pieces_dark ? CellReading::dark : CellReading::light) : CellReading::empty;
       cells[i].confidence = static_cast<float>(std::min(1.0, std::abs(values[i] - threshold) / 30));

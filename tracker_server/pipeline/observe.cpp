@@ -1,5 +1,6 @@
 #include "tracker_server/pipeline/observe.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -9,7 +10,6 @@
 #include "protocol/vocabulary/pose_eigen.hpp"
 #include "tracker_server/camera/camera_json.hpp"
 #include "tracker_server/edges/pyramid.hpp"
-#include "tracker_server/pieces/piece_reader.hpp"
 #include "tracker_server/pipeline/debug_view.hpp"
 #include "tracker_server/pose/board_tracker.hpp"
 #include "tracker_server/pose/plane_pose.hpp"
@@ -121,17 +121,36 @@ BoardToPixel board_to_pixel(const TrackedBoard& seen, const BoardGeometry& board
   };
 }
 
-Mask mask_of(const std::vector<bool>& covered, const BoardToPixel& to_pixel, const Frame& frame, int squares) {
+// One square of the cover, seen straight from above, into the picture.
+void draw_cover(const cv::Mat1b& part, const Vector2d& a, const Vector2d& b, const Vector2d& c, cv::Mat1b& hidden) {
+  Eigen::Matrix2d across;
+  across << b - a, c - a;
+  if (!(std::abs(across.determinant()) > 1e-6)) return;
+  const Eigen::Matrix2d back = across.inverse();
+  const Vector2d low = a.cwiseMin(b).cwiseMin(c).cwiseMin(b + c - a),
+                 high = a.cwiseMax(b).cwiseMax(c).cwiseMax(b + c - a);
+  const int left = std::max(0, static_cast<int>(low.x())),
+            right = std::min(hidden.cols - 1, static_cast<int>(high.x()) + 1);
+  const int top = std::max(0, static_cast<int>(low.y())),
+            bottom = std::min(hidden.rows - 1, static_cast<int>(high.y()) + 1);
+  constexpr double seam = 0.03;  // squares are no parallelograms in the picture: they overlap rather than gape
+  for (int y = top; y <= bottom; ++y)
+    for (int x = left; x <= right; ++x) {
+      const Vector2d at = back * (Vector2d(x, y) - a);
+      if (at.minCoeff() < -seam || at.maxCoeff() >= 1 + seam) continue;
+      const int row = std::clamp(static_cast<int>(at.y() * part.rows), 0, part.rows - 1);
+      const int col = std::clamp(static_cast<int>(at.x() * part.cols), 0, part.cols - 1);
+      if (part(row, col) != 0) hidden(y, x) = 255;
+    }
+}
+
+Mask mask_of(const Cover& cover, const BoardToPixel& to_pixel, const Frame& frame, int squares) {
   cv::Mat1b hidden(frame.image_bgr.size(), std::uint8_t{0});
   for (int row = 0; row < squares; ++row)
     for (int col = 0; col < squares; ++col) {
-      if (!covered[static_cast<std::size_t>(row * squares + col)]) continue;
-      std::vector<cv::Point> outline;
-      for (const auto& [dc, dr] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}}) {
-        const Vector2d p = to_pixel(col + dc, row + dr);
-        outline.emplace_back(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
-      }
-      cv::fillConvexPoly(hidden, outline, 255);
+      const cv::Mat1b part = cover.samples(cv::Rect(col * patch_side, row * patch_side, patch_side, patch_side));
+      if (cv::countNonZero(part) == 0) continue;
+      draw_cover(part, to_pixel(col, row), to_pixel(col + 1, row), to_pixel(col, row + 1), hidden);
     }
   Mask mask;
   mask.stamp = frame.stamp;
@@ -156,7 +175,7 @@ Mask mask_of(const std::vector<bool>& covered, const BoardToPixel& to_pixel, con
 
 struct ObserveContext::State {
   explicit State(const ObserveOptions& given)
-      : options(given), tracker(tracker_options(given)), reader(given.board.squares) {
+      : options(given), tracker(tracker_options(given)), reader(given.board.squares, given.method) {
     if (given.corners_px) tracker.start_at(points_of(*given.corners_px));
   }
   ObserveOptions options;
@@ -201,9 +220,14 @@ Observation observe(const Frame& frame, ObserveContext& context) {
   const BoardToPixel to_pixel = board_to_pixel(seen, board);
   const BoardView view =
       timed(result.step_ms, "view", [&] { return view_board(frame.image_bgr, board.squares, to_pixel); });
-  const PieceReading reading = timed(result.step_ms, "pieces", [&] { return state.reader.read(view, frame.stamp); });
+  const PieceReading reading = timed(result.step_ms, "pieces", [&] {
+    std::vector<double> scan;
+    if (state.options.method == ReadingMethod::scan_segments)
+      scan = scan_values(pyramid.levels[0], board.squares, to_pixel);
+    return state.reader.read(view, frame.stamp, scan);
+  });
   result.debug.readings = letters_of(reading.occupancy);
-  if (reading.occupancy.covered) result.mask = mask_of(reading.covered_cells, to_pixel, frame, board.squares);
+  if (reading.occupancy.covered) result.mask = mask_of(reading.cover, to_pixel, frame, board.squares);
   result.occupancy = reading.occupancy;
 
   // Which side of the board is which cannot be told from its squares; once, at the start, the expected pieces tell it.

@@ -14,6 +14,7 @@
 #include "protocol/vocabulary/pose.hpp"
 #include "protocol/vocabulary/video.hpp"
 #include "tracker_server/camera/camera.hpp"
+#include "tracker_server/pieces/piece_reader.hpp"
 
 namespace counterpart {
 
@@ -23,6 +24,7 @@ struct ObserveOptions {
   std::optional<std::array<double, 8>>
       corners_px;  // outer corners of the playing surface, any order; empty: found unaided
   bool read_pieces = true;
+  ReadingMethod method = ReadingMethod::appearance;
   bool lockstep = false;
 };
 

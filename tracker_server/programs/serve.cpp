@@ -23,6 +23,7 @@ struct Arguments {
   std::string virtual_side = "light";
   std::string activity = "game";
   std::string video = "raw";
+  std::string pieces = "appearance";
   double square_size_m = 0;
 };
 
@@ -63,6 +64,7 @@ Result<void> complete(Arguments& arguments) {
     return failure(ErrorCode::invalid_argument, "--init " + arguments.init + ": auto or corners=x0,y0,...,x3,y3");
   }
   serve.observe.lockstep = serve.lockstep;
+  if (arguments.pieces == "scan-segments") serve.observe.method = ReadingMethod::scan_segments;
   serve.game.board = serve.observe.board;
   if (serve.observe.board.squares == 8 && serve.game.rules == "international") serve.game.rules = "brazilian";
   serve.game.virtual_side = arguments.virtual_side == "light" ? Side::light : Side::dark;
@@ -95,6 +97,11 @@ void add_serve(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--square-size", arguments->square_size_m, "metres")->check(CLI::Range(0.005, 1.0));
   command->add_option("--init", arguments->init, "auto, or corners=x0,y0,...,x3,y3 of the playing surface")
+      ->capture_default_str();
+  command
+      ->add_option("--pieces", arguments->pieces,
+                   "how squares are read: appearance, or scan-segments as in the paper of 2000")
+      ->check(CLI::IsMember({"appearance", "scan-segments"}))
       ->capture_default_str();
   command->add_option("--rules", serve.game.rules, "international, brazilian or english")->capture_default_str();
   command->add_option("--fen", serve.game.start_fen, "start from this position");

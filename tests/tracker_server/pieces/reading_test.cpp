@@ -96,9 +96,9 @@ TEST(ScanSegments, ReadsDarkPiecesOnLightSquares) {
   cv::Mat1b grey;
   cv::cvtColor(test::paint(scene, 2), grey, cv::COLOR_BGR2GRAY);
   const auto values = scan_values(grey, 10, to_pixel(scene));
-  const auto threshold = scan_threshold(values, 10, "");
-  ASSERT_TRUE(threshold);
-  EXPECT_EQ(wrong_cells(scene, read_scan(values, 10, *threshold, true)), 0);
+  const auto rule = scan_rule(values, 10, "");
+  ASSERT_TRUE(rule);
+  EXPECT_EQ(wrong_cells(scene, read_scan(values, 10, rule->threshold, true)), 0);
 }
 
 TEST(ScanSegments, AKnownSetUpGivesTheThreshold) {
@@ -109,7 +109,12 @@ TEST(ScanSegments, AKnownSetUpGivesTheThreshold) {
     values[static_cast<std::size_t>(cell.row * 10 + cell.col)] = 100;
     expected[static_cast<std::size_t>(square - 1)] = 'b';
   }
-  EXPECT_DOUBLE_EQ(*scan_threshold(values, 10, expected), 150);
+  const auto rule = scan_rule(values, 10, expected);
+  ASSERT_TRUE(rule);
+  EXPECT_DOUBLE_EQ(rule->threshold, 150);
+  EXPECT_TRUE(rule->pieces_dark);
+  for (double& value : values) value = 300 - value;
+  EXPECT_FALSE(scan_rule(values, 10, expected)->pieces_dark) << "light pieces on dark squares";
 }
 
 TEST(PieceReader, BelievesOnlyWhatStays) {

@@ -56,6 +56,44 @@ TEST(Observe, GivesPoseAndPiecesOfAGameBoard) {
   }
 }
 
+// The mirror draws what the mask covers in front of the virtual human: whole squares would cut his hand off in blocks.
+TEST(Observe, TheMaskFollowsTheHandAndNotTheSquares) {
+  test::BoardScene scene;
+  scene.camera = test::camera_720x576();
+  scene.X_CB = test::looking_at_board(0.75, 55 * degree, 190 * degree);
+  ObserveOptions options;
+  options.intrinsics = scene.camera;
+  ObserveContext context(options);
+  Frame frame;
+  const auto next = [&] {
+    frame.image_bgr = test::paint(scene, 2);
+    ++frame.stamp.frame_id;
+    frame.stamp.capture_ns += 40'000'000;
+    return observe(frame, context);
+  };
+  for (int i = 0; i < 4; ++i) EXPECT_FALSE(next().mask);
+  const auto hand = [](int x, int y) { return std::hypot(x - 380, (y - 300) / 1.4) < 62; };
+  scene.before = [&](int x, int y) -> std::optional<cv::Vec3b> {
+    if (hand(x, y)) return cv::Vec3b(120, 150, 215);
+    return std::nullopt;
+  };
+  const Observation seen = next();
+  ASSERT_TRUE(seen.mask);
+  std::size_t pixel = 0, both = 0, either = 0;
+  bool covered = false;
+  for (const std::uint32_t run : seen.mask->runs) {
+    for (std::uint32_t i = 0; i < run; ++i, ++pixel) {
+      const bool is_hand = hand(static_cast<int>(pixel % 720), static_cast<int>(pixel / 720));
+      both += covered && is_hand;
+      either += covered || is_hand;
+    }
+    covered = !covered;
+  }
+  ASSERT_EQ(pixel, 720U * 576U);
+  // A square is about 35 pixels wide here; whole squares would agree by two thirds.
+  EXPECT_GT(static_cast<double>(both), 0.85 * static_cast<double>(either));
+}
+
 TEST(Observe, TheExpectedPiecesTellWhichWayRoundTheBoardLies) {
   test::BoardScene scene;
   scene.camera = test::camera_720x576();
