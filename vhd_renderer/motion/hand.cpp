@@ -46,6 +46,35 @@ Vector3f bind_place(const Figure& figure, int joint) {
   return figure.joints[static_cast<std::size_t>(joint)].X_HJ.translation();
 }
 
+// A finger's last bone: takes points of H at bind to H with the hand shaped, the wrist's bind place at the origin.
+Eigen::Isometry3f last_bone(const Figure& figure, const HandParts& hand, const HandShape& shape, std::size_t f) {
+  const Finger& finger = hand.fingers[f];
+  const auto q = turns(hand, shape, f);
+  Quaternionf G = Quaternionf::Identity();
+  Vector3f p = bind_place(figure, finger.joint[0]) - bind_place(figure, hand.wrist);
+  for (std::size_t k = 0; k < 3; ++k) {
+    G = G * q[k];
+    if (k < 2) p += G * (bind_place(figure, finger.joint[k + 1]) - bind_place(figure, finger.joint[k]));
+  }
+  Eigen::Isometry3f X = Eigen::Isometry3f::Identity();
+  X.linear() = G.toRotationMatrix();
+  X.translation() = p - G * bind_place(figure, finger.joint[2]);
+  return X;
+}
+
+// The skin of a finger's last bone at bind, in H.
+std::vector<Vector3f> flesh_H(const Figure& figure, const Finger& finger) {
+  std::vector<Vector3f> flesh;
+  for (const FigurePart& part : figure.parts) {
+    for (std::size_t v = 0; v < part.positions_m.size(); ++v) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        if (part.joints[v][k] == finger.joint[2] && part.weights[v][k] > 0.5F) flesh.push_back(part.positions_m[v]);
+      }
+    }
+  }
+  return flesh;
+}
+
 constexpr std::array<std::size_t, 3> gripping{thumb, index_finger, middle_finger};
 
 // What the grip search varies.
@@ -105,7 +134,8 @@ struct GripTask {
   const HandParts& hand;
   HandShape rest;
   float radius_m;
-  float opening_m = 0;  // the pads stand off the rim by so much
+  float opening_m = 0;             // the pads stand off the rim by so much
+  std::array<float, 3> flesh_m{};  // and each by so much more: the flesh is not a point
   GripVector prior;
   GripVector prior_weight;
 
@@ -117,7 +147,7 @@ struct GripTask {
     for (std::size_t k = 0; k < 3; ++k) {
       const Fingertip tip = fingertip_W(figure, hand, s.shape, gripping[k]);
       const Vector3f out = A.col(0) * std::cos(s.azimuth_rad[k]) + A.col(1) * std::sin(s.azimuth_rad[k]);
-      const Vector3f miss = tip.pad - (s.centre_W + out * (radius_m + opening_m));
+      const Vector3f miss = tip.pad - (s.centre_W + out * (radius_m + opening_m + flesh_m[k]));
       for (int i = 0; i < 3; ++i) r.push_back(miss[i] * 1000.F);
       const Vector3f facing = tip.pad_normal + out;  // zero when the pad looks at the disc
       for (int i = 0; i < 3; ++i) r.push_back(facing[i] * 0.35F);
@@ -176,6 +206,41 @@ GripState first_guess() {
   return s;
 }
 
+// How the flesh of the gripping fingers lies to the disc.
+struct GripFit {
+  float contact_m = 0;                // height of the pads' middles over the disc's foot
+  std::array<float, 3> distance_m{};  // of each fingertip from the disc; negative: inside it
+};
+
+GripFit fit_of(const GripTask& task, const GripState& s, const std::array<std::vector<Vector3f>, 3>& flesh,
+               float height_m) {
+  const Matrix3f A = board_axes_W(task.hand, s.pitch_rad, s.roll_rad);
+  const Matrix3f R_WH = task.hand.R_HW.transpose();
+  std::array<std::vector<Vector3f>, 3> places;  // in the disc's axes, from its middle at the height of the pads
+  float lowest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Isometry3f X = last_bone(task.figure, task.hand, s.shape, gripping[k]);
+    for (const Vector3f& p : flesh[k]) {
+      places[k].push_back(A.transpose() * (R_WH * (X * p) - s.centre_W));
+      lowest = std::min(lowest, places[k].back().z());
+    }
+  }
+  GripFit fit;
+  // The pads touch a little above the middle of the rim; higher where the tips would reach the board.
+  fit.contact_m = std::clamp(0.001F - lowest, std::min(0.75F * height_m, height_m - 0.002F), height_m + 0.002F);
+  for (std::size_t k = 0; k < 3; ++k) {
+    fit.distance_m[k] = flesh[k].empty() ? 0.F : 1.F;
+    for (const Vector3f& p : places[k]) {
+      const float out = p.head<2>().norm() - task.radius_m;
+      const float z = p.z() + fit.contact_m;
+      const float up = std::max(-z, z - height_m);
+      const float distance = out > 0 && up > 0 ? std::hypot(out, up) : std::max(out, up);
+      fit.distance_m[k] = std::min(fit.distance_m[k], distance);
+    }
+  }
+  return fit;
+}
+
 }  // namespace
 
 HandShape blend(const HandShape& a, const HandShape& b, float t) {
@@ -232,29 +297,30 @@ void apply(const Figure& figure, const HandParts& hand, const HandShape& shape, 
 
 Fingertip fingertip_W(const Figure& figure, const HandParts& hand, const HandShape& shape, std::size_t f) {
   const Finger& finger = hand.fingers[f];
-  const auto q = turns(hand, shape, f);
-  const Vector3f wrist = bind_place(figure, hand.wrist);
-  Quaternionf G = Quaternionf::Identity();
-  Vector3f p = bind_place(figure, finger.joint[0]);
-  for (std::size_t k = 0; k < 3; ++k) {
-    G = G * q[k];
-    if (k < 2) p += G * (bind_place(figure, finger.joint[k + 1]) - bind_place(figure, finger.joint[k]));
-  }
-  const Vector3f base = bind_place(figure, finger.joint[2]);
+  const Eigen::Isometry3f X = last_bone(figure, hand, shape, f);
   const Matrix3f R_WH = hand.R_HW.transpose();
-  return {R_WH * (p + G * (finger.pad_H - base) - wrist), R_WH * (G * finger.pad_normal_H),
-          R_WH * (p + G * (finger.tip_H - base) - wrist)};
+  return {R_WH * (X * finger.pad_H), R_WH * (X.linear() * finger.pad_normal_H), R_WH * (X * finger.tip_H)};
 }
 
 Grip grip_on_disc(const Figure& figure, const HandParts& hand, float radius_m, float height_m) {
   GripState guess = first_guess();
   guess.centre_W.y() *= hand.thumb_side;
-  GripTask task{figure, hand, guess.shape, radius_m, 0.F, pack(guess), GripVector::Zero()};
+  GripTask task{figure, hand, guess.shape, radius_m, 0.F, {}, pack(guess), GripVector::Zero()};
   // Angles may leave the prior by some 0.3 rad at the price of a millimetre; the disc's place is free.
   task.prior_weight.setConstant(1.2F);
   task.prior_weight.segment<3>(11).setConstant(1e-3F);
   task.prior_weight[14] = task.prior_weight[15] = 2.F;
-  const GripVector closed = task.solve(pack(guess));
+  std::array<std::vector<Vector3f>, 3> flesh;
+  for (std::size_t k = 0; k < 3; ++k) flesh[k] = flesh_H(figure, hand.fingers[gripping[k]]);
+  GripVector closed = task.solve(pack(guess));
+  GripFit fit = fit_of(task, unpack(closed, task.rest), flesh, height_m);
+  for (int round = 0; round < 4; ++round) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      task.flesh_m[k] = std::clamp(task.flesh_m[k] - fit.distance_m[k], -0.005F, 0.008F);
+    }
+    closed = task.solve(closed);
+    fit = fit_of(task, unpack(closed, task.rest), flesh, height_m);
+  }
 
   GripTask opened = task;
   opened.opening_m = 0.013F;
@@ -268,17 +334,11 @@ Grip grip_on_disc(const Figure& figure, const HandParts& hand, float radius_m, f
   Grip grip;
   grip.closed = state.shape;
   grip.open = unpack(opened.solve(closed), task.rest).shape;
-  // The pads touch a little above the middle of the rim, so that the tips stay off the board.
-  const float contact_m = std::min(0.75F * height_m, height_m - 0.002F);
   Matrix3f R_WP;
   R_WP << A.col(0), A.col(2).cross(A.col(0)), A.col(2);
   grip.X_WP.linear() = R_WP;
-  grip.X_WP.translation() = state.centre_W - A.col(2) * contact_m;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vector3f d = fingertip_W(figure, hand, grip.closed, gripping[k]).pad - state.centre_W;
-    const Vector3f flat = d - A.col(2) * A.col(2).dot(d);
-    grip.residual_mm = std::max(grip.residual_mm, 1000 * std::abs(flat.norm() - radius_m));
-  }
+  grip.X_WP.translation() = state.centre_W - A.col(2) * fit.contact_m;
+  for (const float distance : fit.distance_m) grip.residual_mm = std::max(grip.residual_mm, 1000 * std::abs(distance));
   return grip;
 }
 
