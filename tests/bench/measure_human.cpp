@@ -58,7 +58,9 @@ json clear(const Figure& figure) {
           {"failed", f.failed},
           {"in_pieces_mm", f.in_pieces_mm},
           {"where", f.where},
-          {"in_table_mm", f.in_table_mm}};
+          {"by_phase_mm", f.in_pieces_by_phase_mm},
+          {"in_table_mm", f.in_table_mm},
+          {"where_in_table", f.where_in_table}};
 }
 
 json walk(const Figure& figure) {

@@ -42,14 +42,17 @@ Actor::Actor(const Figure& figure, const Anatomy& anatomy, unsigned seed)
     : figure_(&figure), anatomy_(&anatomy), seed_(seed), has_mouth_shape_(has_morph(figure, "mouth-open")) {
   solved_.pose = bind_pose(figure);
   trial_.pose = solved_.pose;
-  set_home(home_of(Scene{}, anatomy));
+  for (const std::size_t s : {left_side, right_side}) {
+    rest_depth_m_[s] = resting_depth_m(figure, anatomy.arms[s].hand, s);
+  }
+  set_scene(Scene{});
   place_ = home_.entrance;
 }
 
-void Actor::set_home(const Home& home) {
+void Actor::set_scene(const Scene& scene) {
   const bool at_entrance =
       !going() && posture_ == Posture::standing && (place_.p_S - home_.entrance.p_S).norm() < 0.01F;
-  home_ = home;
+  home_ = home_of(scene, *anatomy_, rest_depth_m_);
   if (at_entrance) place_ = home_.entrance;
 }
 
@@ -96,7 +99,8 @@ BodyControls& Actor::begin(double now_s) {
     seatedness_ = 0;
     stand(place_, home_, *anatomy_, controls_);
   }
-  if (posture_ != Posture::seated || going()) controls_.table_edge_y_m = 1e3F;
+  controls_.table_z_m = home_.table_z;
+  controls_.table_edge_y_m = posture_ == Posture::seated && !going() ? home_.table_edge_y : 1e3F;
   add_idle(now_s - start_s_, seed_, seatedness_, controls_);
   return controls_;
 }

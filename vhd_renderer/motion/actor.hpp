@@ -38,7 +38,7 @@ class Actor {
  public:
   Actor(const Figure& figure, const Anatomy& anatomy, unsigned seed);
 
-  void set_home(const Home& home);
+  void set_scene(const Scene& scene);  // board and table, from which his places follow
   const Home& home() const { return home_; }
 
   Posture posture() const { return posture_; }
@@ -72,6 +72,7 @@ class Actor {
   const Figure* figure_;
   const Anatomy* anatomy_;
   unsigned seed_;
+  std::array<float, 2> rest_depth_m_{};
   Home home_;
   Posture posture_ = Posture::standing;
   Place place_;

@@ -147,9 +147,14 @@ Vector3f elbow_pole(const Anatomy& a, const BodyControls& c, const BodyPose& pos
   const auto turned = [&](float swivel) { return Vector3f(AngleAxisf(-side * swivel, n) * natural); };
   const auto clearance = [&](float swivel) {
     const Vector3f elbow = middle_place(a.arms[s].limb, shoulder, goal.wrist_S, turned(swivel));
-    // The table begins softly, so that the elbow does not jump at its edge.
-    const float over = unit_clamp((elbow.y() - c.table_edge_y_m + 0.06F) / 0.10F);
-    return elbow.z() - (c.table_z_m + 0.055F) + (1 - over) * 0.5F;
+    float least = 1;
+    for (const float share : {0.F, 0.25F, 0.5F, 0.75F}) {  // of the forearm, which is thinner towards the wrist
+      const Vector3f p = elbow + (goal.wrist_S - elbow) * share;
+      // The table begins softly, so that the elbow does not jump at its edge.
+      const float over = unit_clamp((p.y() - c.table_edge_y_m + 0.07F) / 0.07F);
+      least = std::min(least, p.z() - (c.table_z_m + lerp(0.06F, 0.035F, share)) + (1 - over) * 0.5F);
+    }
+    return least;
   };
   float low = goal.swivel_rad;
   if (clearance(low) >= 0) return turned(low);

@@ -6,14 +6,13 @@
 
 #include "protocol/vocabulary/pose_eigen.hpp"
 #include "vhd_renderer/draw/piece_shape.hpp"
+#include "vhd_renderer/motion/stance.hpp"
 #include "vhd_renderer/scene/scene_state.hpp"
 
 namespace counterpart {
 namespace {
 
-// If nobody says how large the table is: as far as a person sits from a board, and wide.
-constexpr float kTableBeyondBoard_m = 0.20f;
-constexpr float kTableWidth_m = 1.6f;
+constexpr float kTableWidth_m = 1.6f;  // if nobody says how wide it is
 
 Eigen::Affine3f at(const Eigen::Vector3f& p_B) {
   return Eigen::Affine3f(Eigen::Translation3f(p_B));
@@ -137,10 +136,11 @@ Result<void> VirtualScene::State::furnish(const BoardGeometry& geometry) {
   MeshData board_body = box_mesh({side, side, thickness});
   for (Eigen::Vector3f& p : board_body.positions_m) p.z() -= thickness / 2;
   append(board_body, plane_mesh(side, side, 16, 16), {0, 0, 0});
-  for (const auto& [id, mesh] : {std::pair{&piece_mesh, piece_shape(geometry, 36)},
-                                 {&board_mesh, board_body},
-                                 {&table_mesh, plane_mesh(kTableWidth_m, 2 * (side / 2 + kTableBeyondBoard_m), 24, 16)},
-                                 {&unit_box, box_mesh({1, 1, 1})}}) {
+  for (const auto& [id, mesh] :
+       {std::pair{&piece_mesh, piece_shape(geometry, 36)},
+        {&board_mesh, board_body},
+        {&table_mesh, plane_mesh(kTableWidth_m, 2 * (side / 2 + usual_table_beyond_board_m), 24, 16)},
+        {&unit_box, box_mesh({1, 1, 1})}}) {
     const Result<MeshId> added = renderer->add_mesh(mesh);
     if (!added) return tl::make_unexpected(added.error());
     *id = *added;

@@ -235,6 +235,8 @@ ClearanceFigures measure_clearance(const Figure& figure, int moves, unsigned see
   const Figure arms = flesh_of(figure, joints);
   std::mt19937 random(seed);
   const auto height = static_cast<float>(scene.board.piece_height_m);
+  const Home home = home_of(scene, anatomy_of(figure).value());
+  const float table_edge = home.table_edge_y;
   const float half_board =
       static_cast<float>(scene.board.squares * scene.board.square_size_m / 2 + scene.board.border_m);
   for (int move = 1; move <= moves; ++move) {
@@ -254,12 +256,19 @@ ClearanceFigures measure_clearance(const Figure& figure, int moves, unsigned see
       for (const Vector3f& p : skin_places(arms, r)) {
         const bool over_board = std::abs(p.x()) < half_board && std::abs(p.y()) < half_board;
         const float floor = over_board ? 0.F : static_cast<float>(-scene.board.thickness_m);
-        // The table ends before him.
-        if (p.y() > -half_board - 0.12F) worst.in_table_mm = std::max(worst.in_table_mm, 1000 * (floor - p.z()));
+        // Under the top, or in through the table's edge, whichever way out is shorter.
+        const float below = std::min(floor - p.z(), p.y() - table_edge);
+        if (1000 * below > worst.in_table_mm) {
+          worst.in_table_mm = 1000 * below;
+          worst.where_in_table = what + " " + phase(r, id) + " at " + std::to_string(p.x()) + " " +
+                                 std::to_string(p.y()) + " " + std::to_string(p.z());
+        }
         if (p.z() > 2 * height) continue;
         for (const Vector3f& foot : feet) {
           if (std::abs(p.x() - foot.x()) > 0.02F) continue;
           const float deep = -1000 * distance_to_piece(p, foot, scene.board);
+          float& so_far = worst.in_pieces_by_phase_mm[phase(r, id)];
+          so_far = std::max(so_far, deep);
           if (deep > worst.in_pieces_mm) {
             worst.in_pieces_mm = deep;
             worst.where =

@@ -11,6 +11,7 @@
 
 #include "tests/vhd_renderer/motion/rehearsal.hpp"
 #include "vhd_renderer/motion/joint_angles.hpp"
+#include "vhd_renderer/motion/stance.hpp"
 
 namespace counterpart {
 
@@ -80,6 +81,8 @@ struct ClearanceFigures {
   float in_pieces_mm = 0;  // skin of hands and forearms inside any piece but the one that is moved
   float in_table_mm = 0;   // and under board and table
   std::string where;       // of the worst
+  std::map<std::string, float> in_pieces_by_phase_mm;
+  std::string where_in_table;
 };
 
 // Random moves of light men between dark pieces, some of them kings.
