@@ -1,5 +1,6 @@
 // Measures a virtual human: what every figure means stands in docs/human.md. Prints a JSON line for each measurement.
-//   measure_human [--opponent NAME] [reach] [carry] [clear] [walk] [clips] [commands] [cost] [load]     (nothing: all)
+//   measure_human [--opponent NAME] [reach] [carry] [clear] [walk] [clips] [commands] [cost] [draw]
+//                 [load]     (nothing: all)
 #include <chrono>
 #include <cstring>
 #include <filesystem>
@@ -14,6 +15,7 @@
 #include "vhd_renderer/body/build_character.hpp"
 #include "vhd_renderer/body/character.hpp"
 #include "vhd_renderer/body/load_figure.hpp"
+#include "vhd_renderer/scene/virtual_scene.hpp"
 
 namespace counterpart {
 namespace {
@@ -118,6 +120,32 @@ json cost(const Figure& figure) {
           {"skin_ms", {{"median", quantile(skin_ms, 0.5)}, {"p95", quantile(skin_ms, 0.95)}}}};
 }
 
+// A PAL picture of him at the board, with the triangles that such a picture can show and with all of them.
+json draw(const Figure& figure) {
+  Rehearsal r(figure);
+  const Scene scene = board_with({{"light_1", 40}});
+  r.frame({}, &scene);
+  r.take_seat("instant");
+  View view;
+  view.intrinsics = {1, 720, 576, 645, 645, 359.5, 287.5, {}};
+  view.X_CB = look_at_X_CB({0.10, 0.92, 0.62}, {0, -0.20, 0.10});
+  json result;
+  for (const LevelOfDetail detail : {LevelOfDetail::of_the_picture, LevelOfDetail::all}) {
+    auto drawing = VirtualScene::create(720, 576, figure, detail);
+    if (!drawing) return {{"skipped", drawing.error().message}};
+    std::vector<double> ms;
+    for (int i = 0; i < 60; ++i) {
+      r.frame();
+      ms.push_back(milliseconds(
+          [&] { static_cast<void>((*drawing)->draw(view, scene, r.last, r.director.morph_names()).value()); }));
+    }
+    std::sort(ms.begin(), ms.end());
+    const bool all = detail == LevelOfDetail::all;
+    result[all ? "all" : "shown"] = {{"triangles", (*drawing)->human_triangles()}, {"draw_ms", ms[ms.size() / 2]}};
+  }
+  return result;
+}
+
 json load(const std::string& opponent) {
   const auto ready = ready_characters().find(opponent);
   if (ready == ready_characters().end()) return {{"skipped", "only the ready opponents are built"}};
@@ -152,6 +180,7 @@ int measure(const std::string& opponent, const std::set<std::string>& wanted) {
       {"clips", [&] { return clips(*figure); }},
       {"commands", [&] { return commands(*figure); }},
       {"cost", [&] { return cost(*figure); }},
+      {"draw", [&] { return draw(*figure); }},
       {"load", [&] { return load(opponent); }}};
   for (const std::string& name : wanted) {
     if (std::none_of(all.begin(), all.end(), [&](const auto& one) { return one.first == name; })) {

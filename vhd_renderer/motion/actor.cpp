@@ -68,10 +68,22 @@ void Actor::appear(const Place& place, Posture posture, double now_s) {
   place_ = place;
   posture_ = posture;
   channels_ = {};
+  solved_.wrists = {};
   looked_ = false;
   begin(now_s);
   // What starts in the same step starts from hands that rest.
-  for (const std::size_t s : {left_side, right_side}) channels_[s].step(rest_source(), rest(s), now_s);
+  for (const std::size_t s : {left_side, right_side}) move_arm(s, {}, now_s);
+}
+
+void Actor::move_arm(std::size_t side, const ArmDrive& drive, double now_s) {
+  const Quaternionf heading(Eigen::AngleAxisf(controls_.heading_rad, Vector3f::UnitZ()));
+  ArmGoal goal = drive.source != 0 ? drive.goal : rest(side);
+  goal.wrist_S = heading.conjugate() * (goal.wrist_S - controls_.pelvis_S);
+  goal.R_SW = heading.conjugate() * goal.R_SW;
+  goal = channels_[side].step(drive.source != 0 ? drive.source + 16 : rest_source(), goal, now_s);
+  goal.wrist_S = controls_.pelvis_S + heading * goal.wrist_S;
+  goal.R_SW = (heading * goal.R_SW).normalized();
+  shown_arms_[side] = goal;
 }
 
 std::uint64_t Actor::rest_source() const {
@@ -81,6 +93,7 @@ std::uint64_t Actor::rest_source() const {
 BodyControls& Actor::begin(double now_s) {
   if (start_s_ < 0) start_s_ = now_s;
   controls_ = BodyControls{};
+  controls_.chair_y = home_.chair_back_y;
   while (!stretches_.empty() && now_s - stretch_start_s_ >= stretches_.front().duration_s()) {
     stretch_start_s_ += stretches_.front().duration_s();
     stretches_.pop_front();
@@ -113,10 +126,10 @@ ArmGoal Actor::rest(std::size_t side) const {
 
 const SolvedBody& Actor::finish(const ActorInputs& inputs) {
   for (const std::size_t s : {left_side, right_side}) {
-    const ArmDrive& drive = inputs.arms[s];
-    controls_.arms[s] = channels_[s].step(drive.source != 0 ? drive.source + 16 : rest_source(),
-                                          drive.source != 0 ? drive.goal : rest(s), inputs.now_s);
+    move_arm(s, inputs.arms[s], inputs.now_s);
+    controls_.arms[s] = shown_arms_[s];
   }
+  controls_.dt_s = inputs.dt_s;
   look(inputs);
   wear_face(inputs);
   solve_body(*figure_, *anatomy_, controls_, solved_);
@@ -194,6 +207,15 @@ ClipFrame Actor::clip_frame(bool head) const {
   return frame;
 }
 
+void Actor::keep_off_table(ArmGoal& goal) const {
+  if (posture_ != Posture::seated || going()) return;
+  constexpr float hand_m = 0.055F;  // half a hand, its fingers bent
+  const float over = unit_clamp((goal.wrist_S.y() - home_.table_edge_y + 0.10F) / 0.10F);
+  const float least = home_.table_z + hand_m;
+  const float missing = least - goal.wrist_S.z();
+  if (missing > 0) goal.wrist_S.z() += over * missing;
+}
+
 float Actor::reach_gap_m(std::size_t side, const ArmGoal& goal) {
   BodyControls trial = controls_;
   if (posture_ == Posture::seated && !going()) {
@@ -203,6 +225,7 @@ float Actor::reach_gap_m(std::size_t side, const ArmGoal& goal) {
   }
   trial.arms[1 - side] = rest(1 - side);
   trial.arms[side] = goal;
+  trial_.wrists = {};
   solve_body(*figure_, *anatomy_, trial, trial_);
   return trial_.arm_gap_m[side];
 }

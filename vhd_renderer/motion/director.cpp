@@ -155,6 +155,7 @@ void Director::State::advance_clips(BodyControls& controls, ActorInputs& inputs)
       if (!clip_hand(*clip->clip, static_cast<float>(t), s, actor->clip_frame(clip->clip->in_head_frame), goal,
                      clip->variation))
         continue;
+      actor->keep_off_table(goal);
       if (weight < 1) {
         const ArmGoal rest = actor->rest(s);
         goal.wrist_S = rest.wrist_S + (goal.wrist_S - rest.wrist_S) * weight;
@@ -236,6 +237,10 @@ Performance Director::State::performance() const {
       X_SJ.translation() = pose.p_S[j];
     }
     p.X_BJ.push_back(X_BS * X_SJ);
+  }
+  if (has_body) {
+    const Eigen::Translation3f chair_S(0, actor->controls().chair_y, actor->home().floor_z);
+    p.X_BC = X_BS * chair_S;
   }
   p.morphs.assign(morph_names.size(), 0.F);
   if (has_body) {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "protocol/vocabulary/pose_eigen.hpp"
 #include "vhd_renderer/motion/director_state.hpp"
 
 namespace counterpart {
@@ -322,6 +323,50 @@ void Director::State::start_grasp(CommandQueue::Entry& entry, const Grasp& grasp
       RunningGrasp{id, ++sources, grasp.piece, std::move(motion), now_s, GraspPhase::done, false, false, 0, -1};
 }
 
+// Table, boxes and whatever else reaches from near the floor up into his way.
+std::vector<Footprint> Director::State::obstacles() const {
+  const Home& home = actor->home();
+  std::vector<Footprint> found;
+  bool table_known = false;
+  for (const SceneBox& box : scene.boxes) {
+    table_known = table_known || box.name == "table";
+    const Isometry3f X_BO = to_eigen(box.X_BO).cast<float>();
+    const Vector3f half = to_eigen(box.size_m).cast<float>() / 2;
+    const float tall = X_BO.linear().row(2).cwiseAbs().dot(half);
+    const float low = X_BO.translation().z() - tall - home.floor_z;
+    const float high = X_BO.translation().z() + tall - home.floor_z;
+    if (low > 1.9F || high < 0.08F) continue;
+    const Vector3f x = X_BO.linear().col(0);
+    const float turn = std::atan2(x.y(), x.x()) + (dark ? pi_f : 0.F);
+    found.push_back({turned(X_BO.translation()).head<2>(), half.head<2>(), turn});
+  }
+  if (!table_known) {
+    constexpr float usual_half_width_m = 0.65F;
+    found.push_back({{0, 0}, {usual_half_width_m, -home.table_edge_y}, 0});
+  }
+  return found;
+}
+
+// From a place through points to another, round the obstacles between each two; nothing if there is no way.
+std::optional<std::vector<Vector2f>> Director::State::way_through(const Vector2f& from,
+                                                                  const std::vector<Vector2f>& through,
+                                                                  const Vector2f& to) const {
+  const std::vector<Footprint> things = obstacles();
+  std::vector<Vector2f> stations = through;
+  stations.push_back(to);
+  std::vector<Vector2f> way;
+  Vector2f at = from;
+  for (const Vector2f& station : stations) {
+    const auto round = way_round(at, station, things);
+    if (!round) return std::nullopt;
+    way.insert(way.end(), round->begin(), round->end());
+    way.push_back(station);
+    at = station;
+  }
+  way.pop_back();
+  return way;
+}
+
 void Director::State::start_navigation(std::uint64_t id, const Navigate& n) {
   const Home& home = actor->home();
   const bool to_seat = n.place == "seat";
@@ -355,6 +400,9 @@ void Director::State::start_navigation(std::uint64_t id, const Navigate& n) {
     style.speed_m_s = 1.6F;
     style.step_m = 0.62F;
   }
+  const auto way = way_through(from.p_S, through, end.p_S);
+  if (!way) return queue.end(id, FeedbackState::failed, "in_the_way", -1, now_ns);
+  through = *way;
   const bool moves = (from.p_S - end.p_S).norm() > 0.03F || !through.empty() ||
                      std::abs(wrap_angle(from.heading_rad - end.heading_rad)) > 0.05F;
   if (moves) stretches.push_back(Stretch::walk(Walk(from, through, end, style, anatomy)));

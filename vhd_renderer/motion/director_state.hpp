@@ -12,6 +12,7 @@
 #include "vhd_renderer/motion/command_queue.hpp"
 #include "vhd_renderer/motion/director.hpp"
 #include "vhd_renderer/motion/grasp_motion.hpp"
+#include "vhd_renderer/motion/walk_round.hpp"
 
 namespace counterpart {
 
@@ -119,6 +120,10 @@ struct Director::State {
   void end_idle_clips();
   ClipVariation next_variation();
   void start_grasp(CommandQueue::Entry& entry, const Grasp& grasp, unsigned free_parts);
+  std::vector<Footprint> obstacles() const;
+  std::optional<std::vector<Eigen::Vector2f>> way_through(const Eigen::Vector2f& from,
+                                                          const std::vector<Eigen::Vector2f>& through,
+                                                          const Eigen::Vector2f& to) const;
   void start_navigation(std::uint64_t id, const Navigate& navigate);
   void cancel_body(std::uint64_t id);  // the body lets go of what the command did
   void cancel(std::uint64_t id);       // and says so

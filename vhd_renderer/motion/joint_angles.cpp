@@ -108,7 +108,7 @@ void add_leg(const Anatomy& a, std::size_t s, AngleList& list) {
   list.add(list.name(limb.middle) + " flexion",
            between(list.bone(limb.root, limb.middle), list.bone(limb.middle, limb.end)), 0, 155);
   const Turn foot = turn_of((list.rotation(limb.middle).conjugate() * list.rotation(limb.end)).normalized());
-  list.add(list.name(limb.end), foot, degrees(-35, 55), 32, 45);
+  list.add(list.name(limb.end), foot, degrees(-42, 55), 32, 45);
   if (leg.toe >= 0) list.add(list.name(leg.toe) + " extension", -turn_of(list.turn(leg.toe)).pitch, -40, 65);
 }
 
@@ -123,31 +123,6 @@ Turn turn_of(const Quaternionf& rotation) {
   const Vector3f forward = R.col(1);
   return {-std::asin(std::clamp(forward.z(), -1.F, 1.F)), std::atan2(-R(2, 0), R(2, 2)),
           std::atan2(-forward.x(), forward.y())};
-}
-
-WristAngles wrist_angles(const Vector3f& hinge, const Vector3f& lower, const Matrix3f& R_W, float thumb_side) {
-  WristAngles w;
-  const Vector3f l_W = R_W.transpose() * lower;
-  w.flexion_rad = std::atan2(l_W.z(), l_W.x());
-  w.deviation_rad = std::asin(std::clamp(-thumb_side * l_W.y(), -1.F, 1.F));
-  // The hand brought in line with the forearm by its bend alone; then its thumb against where the elbow closes to.
-  const Vector3f thumb_in_line = Quaternionf::FromTwoVectors(R_W.col(0), lower) * (R_W.col(1) * thumb_side);
-  const Vector3f closing = hinge.cross(lower);
-  w.pronation_rad = thumb_side * std::atan2(closing.cross(thumb_in_line).dot(lower), closing.dot(thumb_in_line));
-  return w;
-}
-
-Matrix3f hand_frame(const Vector3f& hinge, const Vector3f& lower, const WristAngles& w, float thumb_side) {
-  // The straight hand first: x along the forearm, the thumb turned about it from where the elbow closes to.
-  const Vector3f closing = hinge.cross(lower).normalized();
-  const Vector3f thumb = AngleAxisf(thumb_side * w.pronation_rad, lower) * closing;
-  Matrix3f straight;
-  straight << lower, thumb * thumb_side, lower.cross(thumb * thumb_side);
-  // The forearm as the bent hand sees it; the bend is the shortest turn that makes it so.
-  const float flat = std::cos(w.deviation_rad);
-  const Vector3f l_W(flat * std::cos(w.flexion_rad), -thumb_side * std::sin(w.deviation_rad),
-                     flat * std::sin(w.flexion_rad));
-  return straight * Quaternionf::FromTwoVectors(l_W, Vector3f::UnitX()).toRotationMatrix();
 }
 
 std::vector<JointAngle> joint_angles(const Figure& figure, const Anatomy& a, const BodyPose& pose) {

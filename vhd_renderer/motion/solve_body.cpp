@@ -90,7 +90,11 @@ void set_legs(const Figure& figure, const Anatomy& a, const BodyControls& c, Sol
                         AngleAxisf(-foot.pitch_rad, Vector3f::UnitX()));
     const Vector3f ankle_H = figure.joints[at(leg.limb.end)].X_HJ.translation();
     LimbGoal goal;
-    goal.end_S = foot.ball_S + G * (ankle_H - leg.ball_H);
+    // The foot rolls over a place between its toes' joint and the sole under it, so that neither slides far.
+    const Vector3f joint_H =
+        leg.toe >= 0 ? Vector3f(figure.joints[at(leg.toe)].X_HJ.translation()) : Vector3f(leg.ball_H);
+    const Vector3f pivot_H = 0.5F * (joint_H + leg.ball_H);
+    goal.end_S = foot.ball_S + Vector3f(0, 0, pivot_H.z() - leg.ball_H.z()) + G * (ankle_H - pivot_H);
     goal.end_G = G;
     const float side = s == right_side ? 1.F : -1.F;
     const float knee_heading = 0.5F * (foot.heading_rad + c.heading_rad);
@@ -101,7 +105,9 @@ void set_legs(const Figure& figure, const Anatomy& a, const BodyControls& c, Sol
     }
     solved.foot_gap_m[s] = solve_limb(figure, leg.limb, goal, pose);
     // Toes stay on the floor while the heel comes up.
-    if (leg.toe >= 0) pose.turn[at(leg.toe)] = AngleAxisf(std::max(0.F, foot.pitch_rad), Vector3f::UnitX());
+    for (const int toe : leg.toes) {
+      pose.turn[at(toe)] = AngleAxisf(std::max(0.F, foot.pitch_rad), Vector3f::UnitX());
+    }
   }
 }
 
@@ -136,34 +142,64 @@ void set_head(const Figure& figure, const Anatomy& a, const BodyControls& c, Bod
   }
 }
 
-// Elbows hang down and a little outward, but not through the table.
-Vector3f elbow_pole(const Anatomy& a, const BodyControls& c, const BodyPose& pose, std::size_t s) {
-  const float side = s == right_side ? 1.F : -1.F;
+// How an elbow is lifted out of its natural place: about the line from shoulder to wrist, radians.
+struct Swivel {
+  Vector3f natural;  // direction of the elbow that hangs down and a little outward
+  Vector3f line;     // unit, shoulder to wrist
+  float side;
+
+  Vector3f turned(float angle) const { return AngleAxisf(-side * angle, line) * natural; }
+  float of(const Vector3f& elbow) const {
+    const Vector3f a = natural - line * line.dot(natural);
+    const Vector3f b = elbow - line * line.dot(elbow);
+    return -side * std::atan2(a.cross(b).dot(line), a.dot(b));
+  }
+};
+
+// The least lift, from `low` on, that keeps elbow and forearm out of the table.
+float clear_of_table(const Anatomy& a, const BodyControls& c, std::size_t s, const Vector3f& shoulder,
+                     const Swivel& swivel, float low) {
   const ArmGoal& goal = c.arms[s];
-  const Vector3f shoulder = pose.p_S[at(a.arms[s].limb.root)];
-  const Quaternionf heading(AngleAxisf(c.heading_rad, Vector3f::UnitZ()));
-  const Vector3f n = (goal.wrist_S - shoulder).normalized();
-  const Vector3f natural = heading * Vector3f(side * 0.62F, -0.35F, -0.75F);
-  const auto turned = [&](float swivel) { return Vector3f(AngleAxisf(-side * swivel, n) * natural); };
-  const auto clearance = [&](float swivel) {
-    const Vector3f elbow = middle_place(a.arms[s].limb, shoulder, goal.wrist_S, turned(swivel));
+  // A hand below the table top is under the table, and so may its arm be.
+  const float above = unit_clamp((goal.wrist_S.z() - c.table_z_m + 0.01F) / 0.03F);
+  const auto clearance = [&](float lift) {
+    const Vector3f elbow = middle_place(a.arms[s].limb, shoulder, goal.wrist_S, swivel.turned(lift));
     float least = 1;
     for (const float share : {0.F, 0.25F, 0.5F, 0.75F}) {  // of the forearm, which is thinner towards the wrist
       const Vector3f p = elbow + (goal.wrist_S - elbow) * share;
       // The table begins softly, so that the elbow does not jump at its edge.
-      const float over = unit_clamp((p.y() - c.table_edge_y_m + 0.07F) / 0.07F);
+      const float over = above * unit_clamp((p.y() - c.table_edge_y_m + 0.07F) / 0.07F);
       least = std::min(least, p.z() - (c.table_z_m + lerp(0.06F, 0.035F, share)) + (1 - over) * 0.5F);
     }
     return least;
   };
-  float low = goal.swivel_rad;
-  if (clearance(low) >= 0) return turned(low);
-  float high = low + radians(110);
+  if (clearance(low) >= 0) return low;
+  constexpr float most = radians(80);
+  float high = std::max(low, most);
   for (int round = 0; round < 12; ++round) {
     const float middle = 0.5F * (low + high);
     (clearance(middle) < 0 ? low : high) = middle;
   }
-  return turned(high);
+  return high;
+}
+
+// Where the elbow points: hanging, lifted by what the goal says or the table asks for, never in a jump. `solved` still
+// holds the frame before below the shoulder.
+Vector3f elbow_pole(const Anatomy& a, const BodyControls& c, const SolvedBody& solved, std::size_t s) {
+  const Limb& arm = a.arms[s].limb;
+  const ArmGoal& goal = c.arms[s];
+  const Vector3f shoulder = solved.pose.p_S[at(arm.root)];
+  const float side = s == right_side ? 1.F : -1.F;
+  const Quaternionf heading(AngleAxisf(c.heading_rad, Vector3f::UnitZ()));
+  const Swivel swivel{heading * Vector3f(side * 0.62F, -0.35F, -0.75F), (goal.wrist_S - shoulder).normalized(), side};
+  float lift = clear_of_table(a, c, s, shoulder, swivel, goal.swivel_rad);
+  if (solved.wrists[s] && c.dt_s > 0) {
+    constexpr float fastest_rad_s = 0.4F * joint_limit::fastest_turn_rad_s;
+    const Vector3f hinge_before = solved.pose.G[at(arm.middle)] * arm.hinge_H;
+    const float before = swivel.of(swivel.line.cross(hinge_before));
+    lift = std::clamp(lift, before - fastest_rad_s * c.dt_s, before + fastest_rad_s * c.dt_s);
+  }
+  return swivel.turned(lift);
 }
 
 void set_arm(const Figure& figure, const Anatomy& a, const BodyControls& c, std::size_t s, SolvedBody& solved) {
@@ -172,8 +208,22 @@ void set_arm(const Figure& figure, const Anatomy& a, const BodyControls& c, std:
   LimbGoal limb;
   limb.end_S = goal.wrist_S;
   limb.end_G = (goal.R_SW * Quaternionf(hand.R_HW).conjugate()).normalized();
-  limb.pole_S = elbow_pole(a, c, solved.pose, s);
-  solved.arm_gap_m[s] = solve_limb(figure, a.arms[s].limb, limb, solved.pose);
+  limb.pole_S = elbow_pole(a, c, solved, s);
+  const float wrist_gap_m = solve_limb(figure, a.arms[s].limb, limb, solved.pose);
+
+  // A hand goes only where its wrist lets it; then the forearm is solved again under it.
+  const BodyPose& pose = solved.pose;
+  const Limb& arm = a.arms[s].limb;
+  const Vector3f hinge = pose.G[at(arm.middle)] * arm.hinge_H;
+  const Vector3f lower = (pose.p_S[at(arm.end)] - pose.p_S[at(arm.middle)]).normalized();
+  const WristAngles wanted = wrist_angles(hinge, lower, goal.R_SW.toRotationMatrix(), hand.thumb_side);
+  const WristAngles legal = held_back(wanted, solved.wrists[s].value_or(wanted), solved.wrists[s] ? c.dt_s : 0);
+  solved.wrists[s] = legal;
+  const Quaternionf R_SW(hand_frame(hinge, lower, legal, hand.thumb_side));
+  constexpr float palm_m = 0.12F;  // from the wrist to what the hand holds
+  solved.arm_gap_m[s] = wrist_gap_m + palm_m * R_SW.angularDistance(goal.R_SW);
+  limb.end_G = (R_SW * Quaternionf(hand.R_HW).conjugate()).normalized();
+  solve_limb(figure, arm, limb, solved.pose);
   apply(figure, hand, goal.shape, solved.pose);
 }
 

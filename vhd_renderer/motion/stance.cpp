@@ -13,7 +13,6 @@ using Eigen::Quaternionf;
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-constexpr float chair_seat_m = 0.45F;
 constexpr double lower_s = 1.25;  // until he sits
 constexpr double scoot_s = 1.35;  // until he sits at the board
 constexpr float stance_half_m = 0.085F;
@@ -49,6 +48,7 @@ void sitting_moment(double t_s, const Home& home, const Anatomy& a, BodyControls
   const float stand_z = home.floor_z + standing_hip_height(a);
   const float back = minimum_jerk(t / (0.95F * static_cast<float>(lower_s)));
   c.heading_rad = 0;
+  c.chair_y = lerp(home.chair_back_y, home.seat_y, in);
   c.pelvis_S = {0, lerp(lerp(home.chair.p_S.y(), home.chair_back_y, back), home.seat_y, in),
                 lerp(stand_z, home.seat_hip_z, down)};
   const float leaning = bump(0.08F + 0.84F * t / static_cast<float>(lower_s)) - bump(0.08F);

@@ -15,6 +15,8 @@ namespace counterpart {
 // How far a table goes beyond the board towards him where the scene has no box named "table".
 inline constexpr float usual_table_beyond_board_m = 0.19F;
 
+inline constexpr float chair_seat_m = 0.45F;  // over the floor
+
 // Places in the seat frame S, measured from the board, the table and the body.
 struct Home {
   float floor_z = -0.74F;

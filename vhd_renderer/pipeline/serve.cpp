@@ -200,6 +200,7 @@ void RendererDaemon::mirror_on_web(const cv::Mat& mirror, const PoseEstimate& po
     web_->show(std::move(picture));
   }
   web_->subtitle(performance.subtitle);
+  web_->speech(performance.sound);
   for (const Feedback& feedback : performance.feedback) web_->feedback(feedback);
   for (const Control& control : web_->take_controls()) tracker_->broadcast(control);
   if (frames_ % kStatusFrames == 0) web_->status(status_of(pose));

@@ -16,6 +16,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "vhd_renderer/voice/wav.hpp"
+
 extern char** environ;
 
 namespace counterpart {
@@ -69,44 +71,7 @@ std::string read_all(int fd) {
   }
 }
 
-std::uint32_t little_endian(const std::string& bytes, std::size_t at, std::size_t count) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    value |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + i])) << (8 * i);
-  }
-  return value;
-}
-
 }  // namespace
-
-Result<Sound> decode_wav(const std::string& bytes) {
-  const auto wrong = [](const char* what) { return failure(ErrorCode::bad_format, std::string("WAV: ") + what); };
-  if (bytes.size() < 12 || bytes.compare(0, 4, "RIFF") != 0 || bytes.compare(8, 4, "WAVE") != 0) {
-    return wrong("this is none");
-  }
-  Sound sound;
-  bool described = false;
-  for (std::size_t at = 12; at + 8 <= bytes.size();) {
-    const std::size_t left = bytes.size() - at - 8;
-    const std::size_t size = std::min<std::size_t>(little_endian(bytes, at + 4, 4), left);
-    if (bytes.compare(at, 4, "fmt ") == 0) {
-      if (size < 16) return wrong("its description is cut");
-      const bool plain = little_endian(bytes, at + 8, 2) == 1 && little_endian(bytes, at + 10, 2) == 1 &&
-                         little_endian(bytes, at + 22, 2) == 16;
-      sound.rate_hz = static_cast<int>(little_endian(bytes, at + 12, 4));
-      if (!plain || sound.rate_hz < 4000 || sound.rate_hz > 192000) return wrong("not one channel of 16 bits");
-      described = true;
-    } else if (bytes.compare(at, 4, "data") == 0) {
-      if (!described) return wrong("samples before their description");
-      for (std::size_t i = 0; i + 2 <= size; i += 2) {
-        sound.samples.push_back(static_cast<std::int16_t>(little_endian(bytes, at + 8 + i, 2)));
-      }
-      return sound;
-    }
-    at += 8 + size + size % 2;
-  }
-  return wrong("it holds no samples");
-}
 
 Result<Sound> speak(const std::string& text, const std::string& language, const std::string& variant,
                     const std::string& program) {

@@ -17,8 +17,4 @@ Result<Sound> speak(const std::string& text, const std::string& language, const 
 // Remembers what it has said; the first failure is told as a warning, after it the words are only shown.
 Speaker espeak_speaker(const std::string& variant);
 
-// The samples of a WAV file of one channel with 16 bits; a length of "unknown", as streams have, is taken for all there
-// is.
-Result<Sound> decode_wav(const std::string& bytes);
-
 }  // namespace counterpart

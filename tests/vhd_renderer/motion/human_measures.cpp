@@ -76,6 +76,18 @@ std::vector<Vector3f> feet_but(const Rehearsal& r, const Scene& scene, const std
   return feet;
 }
 
+// A joint and all that hang on it.
+std::vector<std::string> names_from(const Figure& figure, const std::string& top) {
+  std::vector<std::string> names;
+  std::vector<bool> inside(figure.joints.size(), false);
+  for (std::size_t j = 0; j < figure.joints.size(); ++j) {
+    const int parent = figure.joints[j].parent;
+    inside[j] = figure.joints[j].name == top || (parent >= 0 && inside[at(parent)]);
+    if (inside[j]) names.push_back(figure.joints[j].name);
+  }
+  return names;
+}
+
 Command navigate(std::uint64_t id, const std::string& place, const std::vector<Point3>& path = {},
                  const std::string& gait = "walk") {
   Command c;
@@ -289,27 +301,27 @@ SlideFigures measure_walk(const Figure& figure) {
   const Scene scene = board_with({});
   r.frame({}, &scene);
   const auto floor = static_cast<float>(-scene.table_height_m);
-  const std::array<Figure, 2> feet{flesh_of(figure, {"l_ankle", "l_midtarsal", "toe1-1.L", "toe"}),
-                                   flesh_of(figure, {"r_ankle", "r_midtarsal", "toe1-1.R", "toe"})};
+  const std::array<Figure, 2> feet{flesh_of(figure, names_from(figure, "l_ankle")),
+                                   flesh_of(figure, names_from(figure, "r_ankle"))};
   std::array<std::vector<Vector3f>, 2> before;
   std::array<std::vector<float>, 2> travelled;
-  constexpr float bears_m = 0.002F;
+  constexpr float bears_m = 0.0015F;  // skin that is so near the floor counts as standing on it
   const auto look = [&](bool walks) {
     float lowest = 1;
     for (std::size_t s = 0; s < 2; ++s) {
       const std::vector<Vector3f> now = skin_places(feet[s], r);
       travelled[s].resize(now.size(), 0);
       bool bears = false;
+      bool bore = false;
       for (std::size_t v = 0; v < now.size(); ++v) {
         const bool stays = !before[s].empty() && now[v].z() < floor + bears_m && before[s][v].z() < floor + bears_m;
         travelled[s][v] = stays ? travelled[s][v] + 1000 * (now[v] - before[s][v]).head<2>().norm() : 0;
-        bears = bears || stays;
+        bears = bears || now[v].z() < floor + bears_m;
+        bore = bore || (!before[s].empty() && before[s][v].z() < floor + bears_m);
         worst.worst_mm = std::max(worst.worst_mm, travelled[s][v]);
         worst.sunk_mm = std::max(worst.sunk_mm, 1000 * (floor - now[v].z()));
         lowest = std::min(lowest, now[v].z() - floor);
       }
-      const bool bore = !before[s].empty() && std::any_of(before[s].begin(), before[s].end(),
-                                                          [&](const Vector3f& p) { return p.z() < floor + bears_m; });
       if (bears && !bore) ++worst.steps;
       before[s] = now;
     }

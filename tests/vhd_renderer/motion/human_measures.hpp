@@ -15,8 +15,13 @@
 
 namespace counterpart {
 
-// Frames a second that limits of change from frame to frame are given for.
-inline constexpr double measured_fps = 25;
+// The largest jumps of a joint from frame to frame at 25 a second.
+inline float largest_turn_deg() {
+  return joint_limit::fastest_turn_rad_s / 25 * 57.29578F;
+}
+inline float largest_move_m() {
+  return joint_limit::fastest_move_m_s / 25;
+}
 
 // Signed distance of a point from a piece that lies flat on its foot, metres; negative inside.
 float distance_to_piece(const Eigen::Vector3f& p, const Eigen::Vector3f& foot, const BoardGeometry& board);
