@@ -68,7 +68,7 @@ void Actor::appear(const Place& place, Posture posture, double now_s) {
   place_ = place;
   posture_ = posture;
   channels_ = {};
-  solved_.wrists = {};
+  solved_.before.reset();
   looked_ = false;
   begin(now_s);
   // What starts in the same step starts from hands that rest.
@@ -84,6 +84,16 @@ void Actor::move_arm(std::size_t side, const ArmDrive& drive, double now_s) {
   goal.wrist_S = controls_.pelvis_S + heading * goal.wrist_S;
   goal.R_SW = (heading * goal.R_SW).normalized();
   shown_arms_[side] = goal;
+  // No hand passes through its own shoulder: it goes round it in front.
+  constexpr float nearest_m = 0.20F;
+  const Vector3f shoulder = solved_.pose.p_S[at(anatomy_->arms[side].limb.root)];
+  const Vector3f away = goal.wrist_S - shoulder;
+  const float missing = nearest_m - away.norm();
+  if (missing > 0) {
+    const float outward = side == right_side ? 0.5F : -0.5F;
+    const Vector3f round = heading * Vector3f(outward, 1, -0.5F).normalized() * missing;
+    shown_arms_[side].wrist_S = shoulder + (away + round).normalized() * nearest_m;
+  }
 }
 
 std::uint64_t Actor::rest_source() const {
@@ -225,7 +235,7 @@ float Actor::reach_gap_m(std::size_t side, const ArmGoal& goal) {
   }
   trial.arms[1 - side] = rest(1 - side);
   trial.arms[side] = goal;
-  trial_.wrists = {};
+  trial_.before.reset();
   solve_body(*figure_, *anatomy_, trial, trial_);
   return trial_.arm_gap_m[side];
 }

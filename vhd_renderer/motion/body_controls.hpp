@@ -60,11 +60,17 @@ struct BodyControls {
   float jaw_rad = 0;
 };
 
+// What a body cannot change in a jump; kept from frame to frame.
+struct BodyMemory {
+  std::array<WristAngles, 2> wrists;
+  std::array<float, 2> lean{0, 0};  // of the trunk, 0..1, for each arm's sake
+};
+
 struct SolvedBody {
   BodyPose pose;
   std::array<float, 2> arm_gap_m{0, 0};  // of the palm from where its goal has it
   std::array<float, 2> foot_gap_m{0, 0};
-  std::array<std::optional<WristAngles>, 2> wrists;  // as they were bent last; kept from frame to frame
+  std::optional<BodyMemory> before;  // nothing: there was no frame before, and every pose is near
 };
 
 // The one body solver: pelvis, trunk with the lean that the arms need, legs, head and eyes, arms, fingers.
