@@ -269,7 +269,7 @@ Result<RenderedFrame> VirtualScene::draw(const View& view, const Scene& scene, s
     const std::size_t step = part.positions_m.size() > 2000 ? 4 : 1;
     for (std::size_t i = 0; i < part.positions_m.size(); i += step) {
       body.extend(part.positions_m[i]);
-      if (part.positions_m[i].z() > table_z) add(part.positions_m[i]);
+      add(part.positions_m[i]);  // legs too: they show beside a table and under it
     }
   }
   DrawOptions options;
