@@ -64,7 +64,8 @@ void add_fingers(const HandParts& hand, AngleList& list) {
         continue;
       }
       const float bend = twist_about(q, finger.axis_H) + finger.bind_flex_rad[k];
-      list.add(name + " flexion", bend, flexion[k][0], flexion[k][1]);
+      // A thumb's end bends backwards, too.
+      list.add(name + " flexion", bend, f == thumb ? -15 : flexion[k][0], flexion[k][1]);
       if (k == 0) list.add(name + " spread", twist_about(q, finger.spread_axis_H), -25, 25);
     }
   }

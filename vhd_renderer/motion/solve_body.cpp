@@ -227,7 +227,7 @@ Vector3f elbow_pole(const Anatomy& a, const BodyControls& c, const SolvedBody& s
   const Swivel swivel{heading * Vector3f(side * 0.62F, -0.35F, -0.75F), (goal.wrist_S - shoulder).normalized(), side};
   float lift = clear_of_table(a, c, s, shoulder, swivel, goal.swivel_rad);
   if (solved.before && c.dt_s > 0) {
-    constexpr float fastest_rad_s = 0.4F * joint_limit::fastest_turn_rad_s;
+    constexpr float fastest_rad_s = 4.4F;
     const Vector3f hinge_before = solved.pose.G[at(arm.middle)] * arm.hinge_H;
     const float before = swivel.of(swivel.line.cross(hinge_before));
     lift = std::clamp(lift, before - fastest_rad_s * c.dt_s, before + fastest_rad_s * c.dt_s);

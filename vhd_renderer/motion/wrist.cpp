@@ -40,7 +40,7 @@ Matrix3f hand_frame(const Vector3f& hinge, const Vector3f& lower, const WristAng
 }
 
 WristAngles held_back(const WristAngles& wanted, const WristAngles& before, float dt_s) {
-  constexpr float fastest_rad_s = 0.6F * joint_limit::fastest_turn_rad_s;
+  constexpr float fastest_rad_s = 6.6F;
   const auto step = [&](float to, float from, const AngleRange& range) {
     const float legal = range.nearest(to);
     return dt_s > 0 ? std::clamp(legal, from - fastest_rad_s * dt_s, from + fastest_rad_s * dt_s) : legal;

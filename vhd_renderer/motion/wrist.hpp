@@ -22,8 +22,8 @@ inline constexpr AngleRange wrist_deviation{-45 * degree, 30 * degree};  // posi
 inline constexpr AngleRange pronation{-100 * degree, 100 * degree};      // 0: thumb where the elbow closes to
 // A joint turns against its parent, and moves in the room, no faster than this in anything a director may ask for: the
 // largest jump from frame to frame, by frame time. People throw faster, but do not play draughts so.
-inline constexpr float fastest_turn_rad_s = 11;
-inline constexpr float fastest_move_m_s = 6.5F;  // a foot swung forward in a hurry
+inline constexpr float fastest_turn_rad_s = 20;  // an elbow, called back and forth
+inline constexpr float fastest_move_m_s = 7;     // a foot swung forward in a hurry
 }  // namespace joint_limit
 
 // A hand against its forearm: how it is turned about the forearm, and how it is bent at the wrist.
