@@ -14,7 +14,7 @@ RUN apt-get update && apt-get install -y --no-install-recommends npm && COUNTERP
 
 FROM docker.io/library/debian:bookworm-slim
 COPY --from=build /runtime-packages.txt /tmp/
-RUN apt-get update && xargs apt-get install -y --no-install-recommends libegl-mesa0 libgl1-mesa-dri espeak-ng-data < /tmp/runtime-packages.txt \
+RUN apt-get update && xargs apt-get install -y --no-install-recommends libegl-mesa0 libgl1-mesa-dri espeak-ng < /tmp/runtime-packages.txt \
  && rm -rf /var/lib/apt/lists/* /tmp/runtime-packages.txt \
  && useradd --system --uid 10001 --create-home counterpart \
  && install -d -o counterpart -m 700 /run/counterpart && install -d -o counterpart /data

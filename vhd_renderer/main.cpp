@@ -3,6 +3,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "vhd_renderer/programs/clips.hpp"
 #include "vhd_renderer/programs/play.hpp"
 #include "vhd_renderer/programs/serve.hpp"
 
@@ -14,6 +15,7 @@ int main(int argc, char** argv) {
   int exit_code = 0;
   counterpart::add_serve(app, exit_code);
   counterpart::add_play(app, exit_code);
+  counterpart::add_clips(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

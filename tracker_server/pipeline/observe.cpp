@@ -9,7 +9,6 @@
 
 #include "protocol/vocabulary/pose_eigen.hpp"
 #include "tracker_server/camera/camera_json.hpp"
-#include "tracker_server/edges/pyramid.hpp"
 #include "tracker_server/pipeline/debug_view.hpp"
 #include "tracker_server/pose/board_tracker.hpp"
 #include "tracker_server/pose/plane_pose.hpp"

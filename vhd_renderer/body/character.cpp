@@ -156,4 +156,12 @@ const std::map<std::string, std::string>& ready_characters() {
   return ready;
 }
 
+std::string voice_of(const std::string& opponent) {
+  const auto ready = ready_characters().find(opponent);
+  if (ready == ready_characters().end()) return "m3";
+  const auto character = parse_character(ready->second);
+  if (!character || !character->female) return character && character->age_years > 60 ? "m7" : "m3";
+  return character->age_years > 60 ? "f4" : "f2";
+}
+
 }  // namespace counterpart

@@ -34,4 +34,7 @@ Result<Character> parse_character(std::string_view json_text);
 // The descriptions of the opponents that are ready, by name ("default", ...).
 const std::map<std::string, std::string>& ready_characters();
 
+// The variant of espeak-ng's voices that goes with an opponent; a man's for whom nothing is known.
+std::string voice_of(const std::string& opponent);
+
 }  // namespace counterpart

@@ -10,10 +10,9 @@
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 
 #include "vhd_renderer/body/axes.hpp"
+#include "vhd_renderer/body/decode_texture.hpp"
 #include "vhd_renderer/body/joint_names.hpp"
 
 namespace counterpart {
@@ -183,25 +182,11 @@ FigurePart part_of(const aiMesh& mesh, const std::vector<Node>& nodes,
   return part;
 }
 
-Result<Texture> decode(const unsigned char* bytes, std::size_t size) {
-  const cv::Mat packed(1, static_cast<int>(size), CV_8UC1, const_cast<unsigned char*>(bytes));
-  const cv::Mat picture = cv::imdecode(packed, cv::IMREAD_UNCHANGED);
-  if (picture.empty() || picture.depth() != CV_8U || picture.cols > 8192 || picture.rows > 8192) {
-    return failure(ErrorCode::bad_format, "a texture cannot be decoded");
-  }
-  cv::Mat rgba;
-  const int code = picture.channels() == 4   ? cv::COLOR_BGRA2RGBA
-                   : picture.channels() == 3 ? cv::COLOR_BGR2RGBA
-                                             : cv::COLOR_GRAY2RGBA;
-  cv::cvtColor(picture, rgba, code);
-  Texture texture{rgba.cols, rgba.rows, {}};
-  texture.rgba.assign(rgba.datastart, rgba.dataend);
-  return texture;
-}
-
-Result<Texture> read_texture(const aiScene& scene, const aiString& name, const fs::path& folder) {
+Result<Texture> texture_named(const aiScene& scene, const aiString& name, const fs::path& folder) {
   if (const aiTexture* inside = scene.GetEmbeddedTexture(name.C_Str()); inside != nullptr) {
-    if (inside->mHeight == 0) return decode(reinterpret_cast<const unsigned char*>(inside->pcData), inside->mWidth);
+    if (inside->mHeight == 0) {
+      return decode_texture({reinterpret_cast<const unsigned char*>(inside->pcData), inside->mWidth});
+    }
     Texture texture{static_cast<int>(inside->mWidth), static_cast<int>(inside->mHeight), {}};
     for (std::size_t i = 0; i < static_cast<std::size_t>(inside->mWidth) * inside->mHeight; ++i) {
       const aiTexel& t = inside->pcData[i];
@@ -210,11 +195,7 @@ Result<Texture> read_texture(const aiScene& scene, const aiString& name, const f
     return texture;
   }
   // Only beside the figure: a file must not make us read elsewhere.
-  const fs::path beside = folder / fs::path(name.C_Str()).filename();
-  std::ifstream in(beside, std::ios::binary);
-  const std::vector<char> bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (bytes.empty()) return failure(ErrorCode::not_found, "no texture " + beside.string());
-  return decode(reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+  return read_texture(folder / fs::path(name.C_Str()).filename());
 }
 
 void set_material(const aiScene& scene, const aiMesh& mesh, const fs::path& folder,
@@ -241,7 +222,7 @@ void set_material(const aiScene& scene, const aiMesh& mesh, const fs::path& fold
     part.texture = found->second;
     return;
   }
-  auto texture = read_texture(scene, name, folder);
+  auto texture = texture_named(scene, name, folder);
   part.texture = texture ? static_cast<int>(figure.textures.size()) : -1;
   if (texture) figure.textures.push_back(std::move(*texture));
   known[name.C_Str()] = part.texture;

@@ -2,11 +2,9 @@
 #include <cmath>
 #include <unordered_map>
 
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
-
 #include "vhd_renderer/body/axes.hpp"
 #include "vhd_renderer/body/build_character.hpp"
+#include "vhd_renderer/body/decode_texture.hpp"
 #include "vhd_renderer/body/joint_names.hpp"
 #include "vhd_renderer/body/makehuman_package.hpp"
 
@@ -171,21 +169,6 @@ FigurePart part_of(const std::string& name, const Source& from, const std::vecto
     if (!morph.vertices.empty()) part.morphs.push_back(std::move(morph));
   }
   return part;
-}
-
-Result<Texture> read_texture(const fs::path& file) {
-  const cv::Mat picture = cv::imread(file.string(), cv::IMREAD_UNCHANGED);
-  if (picture.empty() || picture.depth() != CV_8U) {
-    return failure(ErrorCode::not_found, "the texture " + file.string() + " cannot be read");
-  }
-  cv::Mat rgba;
-  const int code = picture.channels() == 4   ? cv::COLOR_BGRA2RGBA
-                   : picture.channels() == 3 ? cv::COLOR_BGR2RGBA
-                                             : cv::COLOR_GRAY2RGBA;
-  cv::cvtColor(picture, rgba, code);
-  Texture texture{rgba.cols, rgba.rows, {}};
-  texture.rgba.assign(rgba.datastart, rgba.dataend);
-  return texture;
 }
 
 // The colour map among the pictures of a folder: not a normal map, not baked shadow, not the suit painted on the skin.

@@ -42,14 +42,17 @@ Actor::Actor(const Figure& figure, const Anatomy& anatomy, unsigned seed)
     : figure_(&figure), anatomy_(&anatomy), seed_(seed), has_mouth_shape_(has_morph(figure, "mouth-open")) {
   solved_.pose = bind_pose(figure);
   trial_.pose = solved_.pose;
-  set_home(home_of(Scene{}, anatomy));
+  for (const std::size_t s : {left_side, right_side}) {
+    rest_depth_m_[s] = resting_depth_m(figure, anatomy.arms[s].hand, s);
+  }
+  set_scene(Scene{});
   place_ = home_.entrance;
 }
 
-void Actor::set_home(const Home& home) {
+void Actor::set_scene(const Scene& scene) {
   const bool at_entrance =
       !going() && posture_ == Posture::standing && (place_.p_S - home_.entrance.p_S).norm() < 0.01F;
-  home_ = home;
+  home_ = home_of(scene, *anatomy_, rest_depth_m_);
   if (at_entrance) place_ = home_.entrance;
 }
 
@@ -65,10 +68,32 @@ void Actor::appear(const Place& place, Posture posture, double now_s) {
   place_ = place;
   posture_ = posture;
   channels_ = {};
+  solved_.before.reset();
   looked_ = false;
   begin(now_s);
   // What starts in the same step starts from hands that rest.
-  for (const std::size_t s : {left_side, right_side}) channels_[s].step(rest_source(), rest(s), now_s);
+  for (const std::size_t s : {left_side, right_side}) move_arm(s, {}, now_s);
+}
+
+void Actor::move_arm(std::size_t side, const ArmDrive& drive, double now_s) {
+  const Quaternionf heading(Eigen::AngleAxisf(controls_.heading_rad, Vector3f::UnitZ()));
+  ArmGoal goal = drive.source != 0 ? drive.goal : rest(side);
+  goal.wrist_S = heading.conjugate() * (goal.wrist_S - controls_.pelvis_S);
+  goal.R_SW = heading.conjugate() * goal.R_SW;
+  goal = channels_[side].step(drive.source != 0 ? drive.source + 16 : rest_source(), goal, now_s);
+  goal.wrist_S = controls_.pelvis_S + heading * goal.wrist_S;
+  goal.R_SW = (heading * goal.R_SW).normalized();
+  shown_arms_[side] = goal;
+  // No hand passes through its own shoulder: it goes round it in front.
+  constexpr float nearest_m = 0.20F;
+  const Vector3f shoulder = solved_.pose.p_S[at(anatomy_->arms[side].limb.root)];
+  const Vector3f away = goal.wrist_S - shoulder;
+  const float missing = nearest_m - away.norm();
+  if (missing > 0) {
+    const float outward = side == right_side ? 0.5F : -0.5F;
+    const Vector3f round = heading * Vector3f(outward, 1, -0.5F).normalized() * missing;
+    shown_arms_[side].wrist_S = shoulder + (away + round).normalized() * nearest_m;
+  }
 }
 
 std::uint64_t Actor::rest_source() const {
@@ -78,6 +103,7 @@ std::uint64_t Actor::rest_source() const {
 BodyControls& Actor::begin(double now_s) {
   if (start_s_ < 0) start_s_ = now_s;
   controls_ = BodyControls{};
+  controls_.chair_y = home_.chair_back_y;
   while (!stretches_.empty() && now_s - stretch_start_s_ >= stretches_.front().duration_s()) {
     stretch_start_s_ += stretches_.front().duration_s();
     stretches_.pop_front();
@@ -96,7 +122,8 @@ BodyControls& Actor::begin(double now_s) {
     seatedness_ = 0;
     stand(place_, home_, *anatomy_, controls_);
   }
-  if (posture_ != Posture::seated || going()) controls_.table_edge_y_m = 1e3F;
+  controls_.table_z_m = home_.table_z;
+  controls_.table_edge_y_m = posture_ == Posture::seated && !going() ? home_.table_edge_y : 1e3F;
   add_idle(now_s - start_s_, seed_, seatedness_, controls_);
   return controls_;
 }
@@ -109,10 +136,10 @@ ArmGoal Actor::rest(std::size_t side) const {
 
 const SolvedBody& Actor::finish(const ActorInputs& inputs) {
   for (const std::size_t s : {left_side, right_side}) {
-    const ArmDrive& drive = inputs.arms[s];
-    controls_.arms[s] = channels_[s].step(drive.source != 0 ? drive.source + 16 : rest_source(),
-                                          drive.source != 0 ? drive.goal : rest(s), inputs.now_s);
+    move_arm(s, inputs.arms[s], inputs.now_s);
+    controls_.arms[s] = shown_arms_[s];
   }
+  controls_.dt_s = inputs.dt_s;
   look(inputs);
   wear_face(inputs);
   solve_body(*figure_, *anatomy_, controls_, solved_);
@@ -190,6 +217,15 @@ ClipFrame Actor::clip_frame(bool head) const {
   return frame;
 }
 
+void Actor::keep_off_table(ArmGoal& goal) const {
+  if (posture_ != Posture::seated || going()) return;
+  constexpr float hand_m = 0.055F;  // half a hand, its fingers bent
+  const float over = unit_clamp((goal.wrist_S.y() - home_.table_edge_y + 0.10F) / 0.10F);
+  const float least = home_.table_z + hand_m;
+  const float missing = least - goal.wrist_S.z();
+  if (missing > 0) goal.wrist_S.z() += over * missing;
+}
+
 float Actor::reach_gap_m(std::size_t side, const ArmGoal& goal) {
   BodyControls trial = controls_;
   if (posture_ == Posture::seated && !going()) {
@@ -199,6 +235,7 @@ float Actor::reach_gap_m(std::size_t side, const ArmGoal& goal) {
   }
   trial.arms[1 - side] = rest(1 - side);
   trial.arms[side] = goal;
+  trial_.before.reset();
   solve_body(*figure_, *anatomy_, trial, trial_);
   return trial_.arm_gap_m[side];
 }

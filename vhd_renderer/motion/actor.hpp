@@ -38,7 +38,7 @@ class Actor {
  public:
   Actor(const Figure& figure, const Anatomy& anatomy, unsigned seed);
 
-  void set_home(const Home& home);
+  void set_scene(const Scene& scene);  // board and table, from which his places follow
   const Home& home() const { return home_; }
 
   Posture posture() const { return posture_; }
@@ -57,14 +57,18 @@ class Actor {
 
   const SolvedBody& solved() const { return solved_; }
   const BodyControls& controls() const { return controls_; }
-  const ArmGoal& arm(std::size_t side) const { return channels_[side].shown(); }
+  const ArmGoal& arm(std::size_t side) const { return shown_arms_[side]; }
   ArmGoal rest(std::size_t side) const;
   ClipFrame clip_frame(bool head) const;
+
+  // Lifts the goal of a free hand that would be in the table he sits at.
+  void keep_off_table(ArmGoal& goal) const;
 
   // How far the wrist would stay from a goal if he reached for it from where he is, metres.
   float reach_gap_m(std::size_t side, const ArmGoal& goal);
 
  private:
+  void move_arm(std::size_t side, const ArmDrive& drive, double now_s);
   std::uint64_t rest_source() const;  // which rest the arms are in, for their channels
   void look(const ActorInputs& inputs);
   void wear_face(const ActorInputs& inputs);
@@ -72,6 +76,7 @@ class Actor {
   const Figure* figure_;
   const Anatomy* anatomy_;
   unsigned seed_;
+  std::array<float, 2> rest_depth_m_{};
   Home home_;
   Posture posture_ = Posture::standing;
   Place place_;
@@ -84,7 +89,8 @@ class Actor {
   BodyControls controls_;
   SolvedBody solved_;
   SolvedBody trial_;
-  std::array<ArmChannel, 2> channels_;
+  std::array<ArmChannel, 2> channels_;  // in the pelvis' frame: a hand that changes its mind goes with the body
+  std::array<ArmGoal, 2> shown_arms_;
   Follower<Eigen::Vector3f> head_gaze_;
   Follower<Eigen::Vector3f> eye_gaze_;
   std::map<std::string, Follower<float>> face_;

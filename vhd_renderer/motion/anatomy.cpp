@@ -161,6 +161,9 @@ LegParts leg_of(Names& names, const std::string& side) {
   leg.limb = limb_of(names, side + "hip", side + "thigh_twist", side + "knee", side + "shin_twist", side + "ankle",
                      {-1, 0, 0});
   leg.toe = names.optional(side + "midtarsal");
+  for (std::size_t j = 0; j < names.figure.joints.size() && leg.toe >= 0; ++j) {
+    if (names.figure.joints[j].parent == leg.limb.end) leg.toes.push_back(static_cast<int>(j));
+  }
   const Vector3f ankle = names.place(leg.limb.end);
   leg.ankle_height_m = ankle.z();
   const Vector3f toe = leg.toe >= 0 ? names.place(leg.toe) : Vector3f(ankle + Vector3f(0, 0.13F, 0));

@@ -61,7 +61,8 @@ struct ArmParts {
 
 struct LegParts {
   Limb limb;
-  int toe = -1;
+  int toe = -1;                     // the joint that the foot rolls over; -1: the foot is stiff
+  std::vector<int> toes;            // all that hang on the foot, and bend there
   Eigen::Vector3f ball_H{0, 0, 0};  // of the foot, on the sole under the toe joint
   float ankle_height_m = 0.08F;
 };

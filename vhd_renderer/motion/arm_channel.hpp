@@ -1,4 +1,5 @@
-// One arm's goal over time: whoever drives it may change at any moment, the hand never jumps.
+// One arm's goal over time: whoever drives it may change at any moment, the hand never jumps. Goals may be written in any
+// one frame instead of S; the difference between two of them then fades in that frame.
 #pragma once
 
 #include "vhd_renderer/motion/body_controls.hpp"

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 
 #include <Eigen/Core>
@@ -11,6 +12,7 @@
 
 #include "vhd_renderer/motion/anatomy.hpp"
 #include "vhd_renderer/motion/hand.hpp"
+#include "vhd_renderer/motion/wrist.hpp"
 
 namespace counterpart {
 
@@ -50,16 +52,25 @@ struct BodyControls {
   std::array<float, 2> shrug{0, 0};      // 0..1
   std::array<ArmGoal, 2> arms;
   std::array<FootGoal, 2> feet;
+  float chair_y = 0;              // of the hips that sit on the chair as it stands now
+  float dt_s = 0;                 // since the frame before; 0: there was none
   float table_z_m = -0.015F;      // elbows and forearms stay above it ...
   float table_edge_y_m = -0.36F;  // ... beyond this line; far away when he does not sit at it
   std::map<std::string, float> morphs;
   float jaw_rad = 0;
 };
 
+// What a body cannot change in a jump; kept from frame to frame.
+struct BodyMemory {
+  std::array<WristAngles, 2> wrists;
+  std::array<float, 2> lean{0, 0};  // of the trunk, 0..1, for each arm's sake
+};
+
 struct SolvedBody {
   BodyPose pose;
-  std::array<float, 2> arm_gap_m{0, 0};  // distance of the wrist from its goal
+  std::array<float, 2> arm_gap_m{0, 0};  // of the palm from where its goal has it
   std::array<float, 2> foot_gap_m{0, 0};
+  std::optional<BodyMemory> before;  // nothing: there was no frame before, and every pose is near
 };
 
 // The one body solver: pelvis, trunk with the lean that the arms need, legs, head and eyes, arms, fingers.

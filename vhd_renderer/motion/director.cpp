@@ -50,14 +50,15 @@ void Director::State::set_scene(const Scene& next) {
   }
   pieces = std::move(now);
   if (!has_body) return;
-  actor->set_home(home_of(scene, anatomy));
+  actor->set_scene(scene);
   const auto radius = static_cast<float>(scene.board.piece_radius_m);
   const auto height = static_cast<float>(scene.board.piece_height_m);
-  if (radius == grip_radius_m && height == grip_height_m) return;
-  grip_radius_m = radius;
-  grip_height_m = height;
+  const auto square = static_cast<float>(scene.board.square_size_m);
+  if (grips_fit && gripped.radius_m == radius && gripped.height_m == height && gripped.square_m == square) return;
+  gripped = {radius, height, square};
+  grips_fit = true;
   for (const std::size_t s : {left_side, right_side}) {
-    grips[s] = grip_on_disc(*figure, anatomy.arms[s].hand, radius, height);
+    grips[s] = grip_on_piece(*figure, anatomy.arms[s].hand, gripped);
   }
 }
 
@@ -90,7 +91,7 @@ void Director::State::carry_piece(RunningGrasp& grasp, std::size_t side) {
     // Let go: it lies where it was brought to.
     grasp.holds = false;
     grasp.settled = true;
-    piece->foot_S = grasp.motion.task().path_S.back();
+    piece->foot_S = grasp.motion.task().path.back().foot_S;
     piece->turn_rad = heading + grasp.turn_offset_rad;
   }
 }
@@ -154,6 +155,7 @@ void Director::State::advance_clips(BodyControls& controls, ActorInputs& inputs)
       if (!clip_hand(*clip->clip, static_cast<float>(t), s, actor->clip_frame(clip->clip->in_head_frame), goal,
                      clip->variation))
         continue;
+      actor->keep_off_table(goal);
       if (weight < 1) {
         const ArmGoal rest = actor->rest(s);
         goal.wrist_S = rest.wrist_S + (goal.wrist_S - rest.wrist_S) * weight;
@@ -236,6 +238,10 @@ Performance Director::State::performance() const {
     }
     p.X_BJ.push_back(X_BS * X_SJ);
   }
+  if (has_body) {
+    const Eigen::Translation3f chair_S(0, actor->controls().chair_y, actor->home().floor_z);
+    p.X_BC = X_BS * chair_S;
+  }
   p.morphs.assign(morph_names.size(), 0.F);
   if (has_body) {
     for (const auto& [name, weight] : actor->controls().morphs) {
@@ -253,12 +259,17 @@ Performance Director::State::performance() const {
     staged.X_BP = X_BS * staged.X_BP;
     p.pieces.push_back(std::move(staged));
   }
-  if (speech) p.subtitle = speech->say.text;
+  if (speech) {
+    p.subtitle = speech->say.text;
+    p.sound = speech->sound;
+    p.sound_s = now_s - speech->start_s;
+  }
   return p;
 }
 
-Director::Director(const Figure& figure) : state_(std::make_unique<State>()) {
+Director::Director(const Figure& figure, Speaker speaker) : state_(std::make_unique<State>()) {
   State& s = *state_;
+  s.speaker = std::move(speaker);
   s.figure = &figure;
   std::set<std::string> names;
   for (const FigurePart& part : figure.parts) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "protocol/vocabulary/result.hpp"
 #include "protocol/vocabulary/scene.hpp"
 #include "vhd_renderer/body/figure.hpp"
+#include "vhd_renderer/voice/sound.hpp"
 
 namespace counterpart {
 
@@ -32,18 +34,21 @@ struct StagedPiece {
 };
 
 struct Performance {
-  std::vector<Eigen::Isometry3f> X_BJ;  // of every joint of the figure, in B
-  std::vector<float> morphs;            // weight by name order of `Director::morph_names`
-  std::vector<StagedPiece> pieces;      // virtual pieces where they are now, in the hand or on the board
+  std::vector<Eigen::Isometry3f> X_BJ;    // of every joint of the figure, in B
+  std::vector<float> morphs;              // weight by name order of `Director::morph_names`
+  std::vector<StagedPiece> pieces;        // virtual pieces where they are now, in the hand or on the board
+  std::optional<Eigen::Isometry3f> X_BC;  // his chair: on the floor under the middle of its seat, y the way it faces
   std::vector<Feedback> feedback;
-  std::string subtitle;  // what is being said now; empty: nothing
+  std::string subtitle;                // what is being said now; empty: nothing
+  std::shared_ptr<const Sound> sound;  // what is being heard now; null: nothing
+  double sound_s = 0;                  // where in it
 };
 
 class Director {
  public:
   // The figure has to outlive the director. A figure without the joints that motion needs stands still, and every
   // command fails with "no_skeleton".
-  explicit Director(const Figure& figure);
+  explicit Director(const Figure& figure, Speaker speaker = {});
   Director(Director&&) noexcept;
   ~Director();
 

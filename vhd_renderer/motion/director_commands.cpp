@@ -2,11 +2,13 @@
 #include <cmath>
 #include <tuple>
 
+#include "protocol/vocabulary/pose_eigen.hpp"
 #include "vhd_renderer/motion/director_state.hpp"
 
 namespace counterpart {
 namespace {
 
+using Eigen::AngleAxisf;
 using Eigen::Isometry3f;
 using Eigen::Vector2f;
 using Eigen::Vector3f;
@@ -170,7 +172,8 @@ void Director::State::start(CommandQueue::Entry& entry, unsigned free_parts) {
       gaze = RunningGaze{id, *z, now_s};
     }
   } else if (const auto* s = std::get_if<Say>(&action)) {
-    speech = RunningSpeech{id, *s, Utterance(s->text), now_s};
+    const std::shared_ptr<const Sound> sound = speaker ? speaker(s->text, s->language) : nullptr;
+    speech = RunningSpeech{id, *s, sound, Utterance(s->text, sound.get()), now_s};
   } else if (const auto* e = std::get_if<Express>(&action)) {
     face = RunningFace{id, *e, now_s};
   } else if (const auto* p = std::get_if<Stop>(&action)) {
@@ -178,6 +181,56 @@ void Director::State::start(CommandQueue::Entry& entry, unsigned free_parts) {
     stop(what, id);
     queue.end(id, FeedbackState::finished, "", -1, now_ns);
   }
+}
+
+// The way the hand is turned at a place: as near to a person's habit as the neighbours let the open fingers.
+float Director::State::clear_heading(std::size_t side, const Vector3f& foot_S, const std::string& moved) const {
+  const auto radius = static_cast<float>(scene.board.piece_radius_m);
+  const auto height = static_cast<float>(scene.board.piece_height_m);
+  std::vector<std::pair<Vector3f, float>> neighbours;  // place from the piece, height
+  for (const PieceOnStage& piece : pieces) {
+    const Vector3f from = piece.foot_S - foot_S;
+    if (piece.piece.name == moved || from.norm() > 0.13F || from.head<2>().norm() < radius) continue;
+    neighbours.emplace_back(from, height * (piece.piece.king ? 2 : 1));
+  }
+  const float natural = natural_heading(side, foot_S);
+  if (neighbours.empty()) return natural;
+  const auto clearance = [&](float heading) {
+    const AngleAxisf turn(heading + pi_f / 2, Vector3f::UnitZ());
+    float least = 1;
+    for (const Vector3f& p_P : grips[side].open_skin_P) {
+      if (p_P.z() > 2 * height) continue;
+      const Vector3f p = turn * p_P;
+      for (const auto& [from, tall] : neighbours) {
+        if (p.z() < from.z() + tall) least = std::min(least, (p - from).head<2>().norm() - radius);
+      }
+    }
+    return least;
+  };
+  constexpr float enough_m = 0.002F;
+  float best = natural;
+  float best_clearance = -1;
+  for (int step = 0; step <= 16; ++step) {
+    for (const float sign : {1.F, -1.F}) {
+      const float heading = natural + sign * radians(5) * static_cast<float>(step);
+      if (std::abs(heading) > radians(55)) continue;
+      const float free = clearance(heading);
+      if (free >= enough_m) return heading;
+      if (free > best_clearance) {
+        best_clearance = free;
+        best = heading;
+      }
+    }
+  }
+  return best;
+}
+
+void Director::State::set_headings(GraspTask& task, const std::string& moved) const {
+  const auto heading = [&](const Vector3f& foot_S) {
+    return task.touch_only ? natural_heading(task.side, foot_S) : clear_heading(task.side, foot_S, moved);
+  };
+  task.from.heading_rad = heading(task.from.foot_S);
+  for (GraspPoint& point : task.path) point.heading_rad = heading(point.foot_S);
 }
 
 // The hand that comes nearest to every point of a task, and how near.
@@ -188,10 +241,11 @@ std::pair<std::size_t, float> Director::State::best_hand(const std::vector<std::
                                 ? touch_frame(*figure, anatomy.arms[s].hand, hand_shape("point"), grips[s].X_WP)
                                 : grips[s].X_WP;
     float gap = 0;
-    std::vector<Vector3f> points = task.path_S;
-    points.push_back(task.from_S);
-    for (const Vector3f& p : points) {
-      gap = std::max(gap, actor->reach_gap_m(s, holding(X_WP, p, natural_heading(s, p), grips[s].closed)));
+    std::vector<GraspPoint> points = task.path;
+    points.push_back(task.from);
+    for (GraspPoint& point : points) {
+      point.heading_rad = natural_heading(s, point.foot_S);
+      gap = std::max(gap, actor->reach_gap_m(s, holding(X_WP, point, grips[s].closed)));
     }
     if (gap < best.second - 1e-3F) best = {s, gap};
     if (gap <= tolerated_gap_m) break;
@@ -224,7 +278,7 @@ void Director::State::start_grasp(CommandQueue::Entry& entry, const Grasp& grasp
   task.style = grasp.style;
   task.duration_s = grasp.duration_s;
   task.touch_only = grasp.piece.empty();
-  for (const Point3& p : grasp.path_B) task.path_S.push_back(S_from_B(p));
+  for (const Point3& p : grasp.path_B) task.path.push_back({S_from_B(p), 0});
   if (!task.touch_only) {
     const PieceOnStage* piece = find_piece(grasp.piece);
     if (piece == nullptr) return queue.end(id, FeedbackState::failed, "unknown_piece", -1, now_ns);
@@ -232,16 +286,16 @@ void Director::State::start_grasp(CommandQueue::Entry& entry, const Grasp& grasp
     for (const auto& other : grasps) {
       if (other && other->piece == grasp.piece) return queue.end(id, FeedbackState::failed, "piece_in_use", -1, now_ns);
     }
-    task.from_S = piece->foot_S;
+    task.from.foot_S = piece->foot_S;
   } else {
-    task.from_S = task.path_S.back();
+    task.from = task.path.back();
   }
 
   // The hand that is asked for; else the right one, unless the whole move lies on the left or it does not reach.
   std::vector<std::size_t> hands;
   const bool left_side_move =
-      std::all_of(task.path_S.begin(), task.path_S.end(), [](const Vector3f& p) { return p.x() < -0.09F; }) &&
-      task.from_S.x() < -0.09F;
+      std::all_of(task.path.begin(), task.path.end(), [](const GraspPoint& p) { return p.foot_S.x() < -0.09F; }) &&
+      task.from.foot_S.x() < -0.09F;
   for (const std::size_t s : left_side_move ? std::array<std::size_t, 2>{left_side, right_side}
                                             : std::array<std::size_t, 2>{right_side, left_side}) {
     const unsigned bit = s == left_side ? part::left_arm : part::right_arm;
@@ -249,10 +303,10 @@ void Director::State::start_grasp(CommandQueue::Entry& entry, const Grasp& grasp
   }
   auto [best, best_gap] = best_hand(hands, task);
   // To point at something one need not reach it.
-  const Vector3f aim_S = task.from_S;
+  const Vector3f aim_S = task.from.foot_S;
   for (int tenths = 1; task.style == "point" && best_gap > tolerated_gap_m && tenths < 8; ++tenths) {
-    task.from_S = aim_S + (Vector3f(0, -0.15F, 0.15F) - aim_S) * (0.1F * static_cast<float>(tenths));
-    task.path_S = {task.from_S};
+    task.from.foot_S = aim_S + (Vector3f(0, -0.15F, 0.15F) - aim_S) * (0.1F * static_cast<float>(tenths));
+    task.path = {task.from};
     std::tie(best, best_gap) = best_hand(hands, task);
   }
   if (best_gap > tolerated_gap_m) {
@@ -263,9 +317,54 @@ void Director::State::start_grasp(CommandQueue::Entry& entry, const Grasp& grasp
   end_idle_clips();
   const float tallest = 2 * static_cast<float>(scene.board.piece_height_m);
   task.clearance_m = tallest + 0.014F;
+  set_headings(task, grasp.piece);
   GraspMotion motion(task, grips[best], *figure, anatomy.arms[best].hand, actor->arm(best), actor->rest(best));
   grasps[best] =
       RunningGrasp{id, ++sources, grasp.piece, std::move(motion), now_s, GraspPhase::done, false, false, 0, -1};
+}
+
+// Table, boxes and whatever else reaches from near the floor up into his way.
+std::vector<Footprint> Director::State::obstacles() const {
+  const Home& home = actor->home();
+  std::vector<Footprint> found;
+  bool table_known = false;
+  for (const SceneBox& box : scene.boxes) {
+    table_known = table_known || box.name == "table";
+    const Isometry3f X_BO = to_eigen(box.X_BO).cast<float>();
+    const Vector3f half = to_eigen(box.size_m).cast<float>() / 2;
+    const float tall = X_BO.linear().row(2).cwiseAbs().dot(half);
+    const float low = X_BO.translation().z() - tall - home.floor_z;
+    const float high = X_BO.translation().z() + tall - home.floor_z;
+    if (low > 1.9F || high < 0.08F) continue;
+    const Vector3f x = X_BO.linear().col(0);
+    const float turn = std::atan2(x.y(), x.x()) + (dark ? pi_f : 0.F);
+    found.push_back({turned(X_BO.translation()).head<2>(), half.head<2>(), turn});
+  }
+  if (!table_known) {
+    constexpr float usual_half_width_m = 0.65F;
+    found.push_back({{0, 0}, {usual_half_width_m, -home.table_edge_y}, 0});
+  }
+  return found;
+}
+
+// From a place through points to another, round the obstacles between each two; nothing if there is no way.
+std::optional<std::vector<Vector2f>> Director::State::way_through(const Vector2f& from,
+                                                                  const std::vector<Vector2f>& through,
+                                                                  const Vector2f& to) const {
+  const std::vector<Footprint> things = obstacles();
+  std::vector<Vector2f> stations = through;
+  stations.push_back(to);
+  std::vector<Vector2f> way;
+  Vector2f at = from;
+  for (const Vector2f& station : stations) {
+    const auto round = way_round(at, station, things);
+    if (!round) return std::nullopt;
+    way.insert(way.end(), round->begin(), round->end());
+    way.push_back(station);
+    at = station;
+  }
+  way.pop_back();
+  return way;
 }
 
 void Director::State::start_navigation(std::uint64_t id, const Navigate& n) {
@@ -301,6 +400,9 @@ void Director::State::start_navigation(std::uint64_t id, const Navigate& n) {
     style.speed_m_s = 1.6F;
     style.step_m = 0.62F;
   }
+  const auto way = way_through(from.p_S, through, end.p_S);
+  if (!way) return queue.end(id, FeedbackState::failed, "in_the_way", -1, now_ns);
+  through = *way;
   const bool moves = (from.p_S - end.p_S).norm() > 0.03F || !through.empty() ||
                      std::abs(wrap_angle(from.heading_rad - end.heading_rad)) > 0.05F;
   if (moves) stretches.push_back(Stretch::walk(Walk(from, through, end, style, anatomy)));
@@ -336,9 +438,9 @@ void Director::State::cancel_body(std::uint64_t id) {
     GraspTask back = grasp->motion.task();
     back.duration_s = 0;
     back.style.clear();
-    const Vector3f origin = back.from_S;
-    back.from_S = moment.phase == GraspPhase::carry ? moment.held_S : origin;
-    back.path_S = {origin};
+    const GraspPoint origin = back.from;
+    if (moment.phase == GraspPhase::carry) back.from = {moment.held_S, moment.heading_rad};
+    back.path = {origin};
     const bool touch = back.touch_only;
     GraspMotion motion(back, grips[s], *figure, anatomy.arms[s].hand, actor->arm(s), actor->rest(s));
     if (touch) {

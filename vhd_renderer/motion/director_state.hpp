@@ -12,6 +12,7 @@
 #include "vhd_renderer/motion/command_queue.hpp"
 #include "vhd_renderer/motion/director.hpp"
 #include "vhd_renderer/motion/grasp_motion.hpp"
+#include "vhd_renderer/motion/walk_round.hpp"
 
 namespace counterpart {
 
@@ -60,6 +61,7 @@ struct RunningFace {
 struct RunningSpeech {
   std::uint64_t id = 0;
   Say say;
+  std::shared_ptr<const Sound> sound;
   Utterance utterance;
   double start_s = 0;
 };
@@ -71,13 +73,14 @@ struct Director::State {
   std::optional<Actor> actor;
   std::vector<std::string> morph_names;
   CommandQueue queue;
+  Speaker speaker;
 
   Scene scene;
   bool dark = false;  // B is S turned by half a circle
   std::vector<PieceOnStage> pieces;
   std::array<Grip, 2> grips;
-  float grip_radius_m = 0;
-  float grip_height_m = 0;
+  GripTarget gripped;  // what the grips were made for
+  bool grips_fit = false;
 
   std::array<std::optional<RunningGrasp>, 2> grasps;
   std::list<RunningClip> clips;
@@ -112,9 +115,15 @@ struct Director::State {
   void submit(const Command& command);
   void start(CommandQueue::Entry& entry, unsigned free_parts);
   std::pair<std::size_t, float> best_hand(const std::vector<std::size_t>& hands, const GraspTask& task);
+  float clear_heading(std::size_t side, const Eigen::Vector3f& foot_S, const std::string& moved) const;
+  void set_headings(GraspTask& task, const std::string& moved) const;
   void end_idle_clips();
   ClipVariation next_variation();
   void start_grasp(CommandQueue::Entry& entry, const Grasp& grasp, unsigned free_parts);
+  std::vector<Footprint> obstacles() const;
+  std::optional<std::vector<Eigen::Vector2f>> way_through(const Eigen::Vector2f& from,
+                                                          const std::vector<Eigen::Vector2f>& through,
+                                                          const Eigen::Vector2f& to) const;
   void start_navigation(std::uint64_t id, const Navigate& navigate);
   void cancel_body(std::uint64_t id);  // the body lets go of what the command did
   void cancel(std::uint64_t id);       // and says so

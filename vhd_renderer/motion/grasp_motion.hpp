@@ -11,18 +11,24 @@
 #include <Eigen/Geometry>
 
 #include "vhd_renderer/motion/body_controls.hpp"
-#include "vhd_renderer/motion/hand.hpp"
+#include "vhd_renderer/motion/grip.hpp"
 
 namespace counterpart {
 
+// A place of a piece and how the hand is turned when it is there.
+struct GraspPoint {
+  Eigen::Vector3f foot_S{0, 0, 0};
+  float heading_rad = 0;  // about z from S's y axis
+};
+
 struct GraspTask {
   std::size_t side = right_side;
-  bool touch_only = false;              // no piece: touch the last point with the forefinger
-  Eigen::Vector3f from_S{0, 0, 0};      // foot of the piece
-  std::vector<Eigen::Vector3f> path_S;  // hops, the last is where it stays
-  std::string style;                    // "", "slam", "hesitant"; with touch_only "point": he stays there for a second
-  double duration_s = 0;                // 0: as long as a person takes
-  float clearance_m = 0.03F;            // how high the piece is lifted over others, at least
+  bool touch_only = false;  // no piece: touch the last point with the forefinger
+  GraspPoint from;
+  std::vector<GraspPoint> path;  // hops, the last is where it stays
+  std::string style;             // "", "slam", "hesitant"; with touch_only "point": he stays there for a second
+  double duration_s = 0;         // 0: as long as a person takes
+  float clearance_m = 0.03F;     // how high hand and piece are over the board while they travel, at least
 };
 
 enum class GraspPhase : std::uint8_t { reach, close, carry, release, retract, done };
@@ -52,14 +58,15 @@ class GraspMotion {
 
  private:
   struct Hop {
-    Eigen::Vector3f a;
-    Eigen::Vector3f b;
+    GraspPoint a;
+    GraspPoint b;
     double start_s = 0;
     double end_s = 0;
     float lift_m = 0;
   };
 
-  ArmGoal goal_for(const Eigen::Vector3f& foot_S, float heading, const HandShape& shape) const;
+  ArmGoal goal_for(const GraspPoint& point, const HandShape& shape) const;
+  ArmGoal between(const ArmGoal& free_hand, const GraspPoint& point, const HandShape& open, float u) const;
 
   GraspTask task_;
   Grip grip_;
@@ -76,7 +83,7 @@ Eigen::Isometry3f touch_frame(const Figure& figure, const HandParts& hand, const
                               const Eigen::Isometry3f& X_WP);
 
 // The wrist pose that holds a piece whose foot is at a point, the hand pointing along `heading`.
-ArmGoal holding(const Eigen::Isometry3f& X_WP, const Eigen::Vector3f& foot_S, float heading, const HandShape& shape);
+ArmGoal holding(const Eigen::Isometry3f& X_WP, const GraspPoint& point, const HandShape& shape);
 
 // The way a seated person's hand points when it is at a place of the board.
 float natural_heading(std::size_t side, const Eigen::Vector3f& target_S);

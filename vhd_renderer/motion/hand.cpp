@@ -1,10 +1,7 @@
 #include "vhd_renderer/motion/hand.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <functional>
-#include <vector>
-
-#include <Eigen/Cholesky>
 
 #include "vhd_renderer/motion/curves.hpp"
 
@@ -46,134 +43,23 @@ Vector3f bind_place(const Figure& figure, int joint) {
   return figure.joints[static_cast<std::size_t>(joint)].X_HJ.translation();
 }
 
-constexpr std::array<std::size_t, 3> gripping{thumb, index_finger, middle_finger};
+using Bones = std::array<Eigen::Isometry3f, 3>;
 
-// What the grip search varies.
-struct GripState {
-  HandShape shape;
-  Vector3f centre_W{0, 0, 0};          // of the disc at the height of the contact
-  float pitch_rad = 0.75F;             // of the hand below the horizontal
-  float roll_rad = 0.F;                // thumb's side up
-  std::array<float, 3> azimuth_rad{};  // of the contacts, from the hand's forward direction towards the little finger
-};
-
-constexpr int grip_unknowns = 19;
-using GripVector = Eigen::Matrix<float, grip_unknowns, 1>;
-
-GripVector pack(const GripState& s) {
-  GripVector x;
-  const auto& f = s.shape.fingers;
-  x << s.shape.thumb_turn_W, f[thumb].flex_rad[1], f[thumb].flex_rad[2], f[index_finger].flex_rad[0],
-      f[index_finger].flex_rad[1], f[index_finger].spread_rad, f[middle_finger].flex_rad[0],
-      f[middle_finger].flex_rad[1], f[middle_finger].spread_rad, s.centre_W * 10, s.pitch_rad, s.roll_rad,
-      s.azimuth_rad[0], s.azimuth_rad[1], s.azimuth_rad[2];
-  return x;
-}
-
-GripState unpack(const GripVector& x, const HandShape& rest) {
-  GripState s;
-  s.shape = rest;
-  s.shape.thumb_turn_W = x.head<3>();
-  auto& f = s.shape.fingers;
-  f[thumb].flex_rad = {0, x[3], x[4]};
-  for (const std::size_t k : {0, 1}) {
-    FingerBend& bend = f[k == 0 ? index_finger : middle_finger];
-    const auto at = static_cast<Eigen::Index>(5 + 3 * k);
-    bend.flex_rad = {x[at], x[at + 1], 0.55F * x[at + 1]};  // the last joint follows the one before it
-    bend.spread_rad = x[at + 2];
+// A finger's bones: each takes points of H at bind to the hand frame W with the hand shaped.
+Bones bones_W(const Figure& figure, const HandParts& hand, const HandShape& shape, std::size_t f) {
+  const Finger& finger = hand.fingers[f];
+  const auto q = turns(hand, shape, f);
+  const Matrix3f R_WH = hand.R_HW.transpose();
+  Quaternionf G = Quaternionf::Identity();
+  Vector3f p = bind_place(figure, finger.joint[0]) - bind_place(figure, hand.wrist);
+  Bones bones;
+  for (std::size_t k = 0; k < 3; ++k) {
+    G = G * q[k];
+    bones[k].linear() = R_WH * G.toRotationMatrix();
+    bones[k].translation() = R_WH * (p - G * bind_place(figure, finger.joint[k]));
+    if (k < 2) p += G * (bind_place(figure, finger.joint[k + 1]) - bind_place(figure, finger.joint[k]));
   }
-  s.centre_W = x.segment<3>(11) / 10;
-  s.pitch_rad = x[14];
-  s.roll_rad = x[15];
-  s.azimuth_rad = {x[16], x[17], x[18]};
-  return s;
-}
-
-// Axes of the board in the hand: forward, towards the little finger, up.
-Matrix3f board_axes_W(const HandParts& hand, float pitch, float roll) {
-  const float s = hand.thumb_side;
-  const Matrix3f R =
-      (AngleAxisf(pitch, Vector3f::UnitY()) * AngleAxisf(roll * s, Vector3f::UnitX())).toRotationMatrix();
-  // R takes W to axes with x forward and z up; its rows are those axes written in W.
-  Matrix3f A;
-  A << R.transpose() * Vector3f::UnitX(), R.transpose() * Vector3f(0, -s, 0), R.transpose() * Vector3f::UnitZ();
-  return A;
-}
-
-struct GripTask {
-  const Figure& figure;
-  const HandParts& hand;
-  HandShape rest;
-  float radius_m;
-  float opening_m = 0;  // the pads stand off the rim by so much
-  GripVector prior;
-  GripVector prior_weight;
-
-  std::vector<float> residuals(const GripVector& x) const {
-    const GripState s = unpack(x, rest);
-    const Matrix3f A = board_axes_W(hand, s.pitch_rad, s.roll_rad);
-    std::vector<float> r;
-    r.reserve(40);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Fingertip tip = fingertip_W(figure, hand, s.shape, gripping[k]);
-      const Vector3f out = A.col(0) * std::cos(s.azimuth_rad[k]) + A.col(1) * std::sin(s.azimuth_rad[k]);
-      const Vector3f miss = tip.pad - (s.centre_W + out * (radius_m + opening_m));
-      for (int i = 0; i < 3; ++i) r.push_back(miss[i] * 1000.F);
-      const Vector3f facing = tip.pad_normal + out;  // zero when the pad looks at the disc
-      for (int i = 0; i < 3; ++i) r.push_back(facing[i] * 0.35F);
-    }
-    for (Eigen::Index i = 0; i < grip_unknowns; ++i) r.push_back((x[i] - prior[i]) * prior_weight[i]);
-    return r;
-  }
-
-  GripVector solve(GripVector x) const {
-    constexpr float h = 1e-3F;
-    float damping = 1e-2F;
-    std::vector<float> r = residuals(x);
-    const auto cost = [](const std::vector<float>& v) {
-      float sum = 0;
-      for (const float one : v) sum += one * one;
-      return sum;
-    };
-    for (int round = 0; round < 60; ++round) {
-      const auto rows = static_cast<Eigen::Index>(r.size());
-      Eigen::MatrixXf J(rows, grip_unknowns);
-      for (Eigen::Index c = 0; c < grip_unknowns; ++c) {
-        GripVector shifted = x;
-        shifted[c] += h;
-        const std::vector<float> there = residuals(shifted);
-        for (Eigen::Index i = 0; i < rows; ++i) {
-          J(i, c) = (there[static_cast<std::size_t>(i)] - r[static_cast<std::size_t>(i)]) / h;
-        }
-      }
-      const Eigen::VectorXf e = Eigen::Map<const Eigen::VectorXf>(r.data(), rows);
-      Eigen::MatrixXf N = J.transpose() * J;
-      N.diagonal().array() += damping;
-      const GripVector step = N.ldlt().solve(-J.transpose() * e);
-      const GripVector next = x + step;
-      const std::vector<float> there = residuals(next);
-      if (cost(there) < cost(r)) {
-        x = next;
-        r = there;
-        damping = std::max(1e-6F, damping * 0.4F);
-        if (step.norm() < 1e-5F) break;
-      } else {
-        damping *= 5;
-        if (damping > 1e6F) break;
-      }
-    }
-    return x;
-  }
-};
-
-GripState first_guess() {
-  GripState s;
-  s.shape = hand_shape("grip");
-  s.centre_W = {0.13F, 0.01F, -0.06F};
-  s.pitch_rad = radians(42);
-  s.roll_rad = radians(12);
-  s.azimuth_rad = {radians(192), radians(-10), radians(34)};
-  return s;
+  return bones;
 }
 
 }  // namespace
@@ -217,6 +103,7 @@ HandShape hand_shape(const std::string& name) {
   if (name == "chin") return shape({0.0F, 0.0F, 0.0F}, 10, {{{28, 30, 14}, {55, 62, 30}, {62, 70, 35}, {65, 70, 35}}});
   if (name == "tap_a") return shape({0.05F, 0.05F, 0}, 10, {{{2, 26, 12}, {30, 34, 14}, {10, 31, 16}, {38, 36, 17}}});
   if (name == "tap_b") return shape({0.05F, 0.05F, 0}, 10, {{{30, 30, 12}, {4, 28, 14}, {36, 34, 16}, {12, 33, 17}}});
+  if (name == "rest") return shape({0.1F, 0.1F, 0}, 6, {{{9, 14, 8}, {10, 16, 9}, {11, 18, 10}, {12, 20, 11}}});
   if (name == "grip")
     return shape({0.35F, 0.25F, -0.1F}, 15, {{{42, 30, 16}, {46, 32, 18}, {62, 60, 30}, {66, 66, 32}}});
   return shape({0.05F, 0.05F, 0}, 10, {{{18, 24, 12}, {22, 28, 14}, {25, 31, 16}, {27, 33, 17}}});
@@ -232,54 +119,61 @@ void apply(const Figure& figure, const HandParts& hand, const HandShape& shape, 
 
 Fingertip fingertip_W(const Figure& figure, const HandParts& hand, const HandShape& shape, std::size_t f) {
   const Finger& finger = hand.fingers[f];
-  const auto q = turns(hand, shape, f);
-  const Vector3f wrist = bind_place(figure, hand.wrist);
-  Quaternionf G = Quaternionf::Identity();
-  Vector3f p = bind_place(figure, finger.joint[0]);
-  for (std::size_t k = 0; k < 3; ++k) {
-    G = G * q[k];
-    if (k < 2) p += G * (bind_place(figure, finger.joint[k + 1]) - bind_place(figure, finger.joint[k]));
-  }
-  const Vector3f base = bind_place(figure, finger.joint[2]);
-  const Matrix3f R_WH = hand.R_HW.transpose();
-  return {R_WH * (p + G * (finger.pad_H - base) - wrist), R_WH * (G * finger.pad_normal_H),
-          R_WH * (p + G * (finger.tip_H - base) - wrist)};
+  const Eigen::Isometry3f last = bones_W(figure, hand, shape, f)[2];
+  return {last * finger.pad_H, last.linear() * finger.pad_normal_H, last * finger.tip_H};
 }
 
-Grip grip_on_disc(const Figure& figure, const HandParts& hand, float radius_m, float height_m) {
-  GripState guess = first_guess();
-  guess.centre_W.y() *= hand.thumb_side;
-  GripTask task{figure, hand, guess.shape, radius_m, 0.F, pack(guess), GripVector::Zero()};
-  // Angles may leave the prior by some 0.3 rad at the price of a millimetre; the disc's place is free.
-  task.prior_weight.setConstant(1.2F);
-  task.prior_weight.segment<3>(11).setConstant(1e-3F);
-  task.prior_weight[14] = task.prior_weight[15] = 2.F;
-  const GripVector closed = task.solve(pack(guess));
-
-  GripTask opened = task;
-  opened.opening_m = 0.013F;
-  opened.prior = closed;
-  opened.prior_weight.setConstant(0.3F);
-  opened.prior_weight.segment<3>(11).setConstant(1e4F);  // the disc stays where it is in the hand
-  opened.prior_weight.segment<2>(14).setConstant(1e4F);
-
-  const GripState state = unpack(closed, task.rest);
-  const Matrix3f A = board_axes_W(hand, state.pitch_rad, state.roll_rad);
-  Grip grip;
-  grip.closed = state.shape;
-  grip.open = unpack(opened.solve(closed), task.rest).shape;
-  // The pads touch a little above the middle of the rim, so that the tips stay off the board.
-  const float contact_m = std::min(0.75F * height_m, height_m - 0.002F);
-  Matrix3f R_WP;
-  R_WP << A.col(0), A.col(2).cross(A.col(0)), A.col(2);
-  grip.X_WP.linear() = R_WP;
-  grip.X_WP.translation() = state.centre_W - A.col(2) * contact_m;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vector3f d = fingertip_W(figure, hand, grip.closed, gripping[k]).pad - state.centre_W;
-    const Vector3f flat = d - A.col(2) * A.col(2).dot(d);
-    grip.residual_mm = std::max(grip.residual_mm, 1000 * std::abs(flat.norm() - radius_m));
+HandSkin::HandSkin(const Figure& figure, const HandParts& hand) : figure_(&figure), hand_(&hand) {
+  // Where a joint's influence goes: -1 another part of the body, 0 the palm, else 1 + 3 * finger + bone.
+  std::vector<int> place(figure.joints.size(), -1);
+  place[at(hand.wrist)] = 0;
+  for (const int j : hand.below) place[at(j)] = 0;
+  for (std::size_t f = 0; f < 5; ++f) {
+    for (std::size_t k = 0; k < 3; ++k) place[at(hand.fingers[f].joint[k])] = static_cast<int>(1 + 3 * f + k);
   }
-  return grip;
+  for (const FigurePart& part : figure.parts) {
+    for (std::size_t v = 0; v < part.positions_m.size(); ++v) add(part, v, place);
+  }
+}
+
+void HandSkin::add(const FigurePart& part, std::size_t v, const std::vector<int>& place) {
+  Vertex vertex{part.positions_m[v], {}, part.weights[v]};
+  std::array<float, parts> share{};
+  float inside = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const int where = place[part.joints[v][k]];
+    vertex.bones[k] = static_cast<std::uint8_t>(std::max(0, where));
+    if (where < 0) continue;
+    inside += part.weights[v][k];
+    share[where == 0 ? palm : static_cast<std::size_t>(where - 1) / 3] += part.weights[v][k];
+  }
+  if (inside < 0.5F) return;
+  vertices_[static_cast<std::size_t>(std::max_element(share.begin(), share.end()) - share.begin())].push_back(vertex);
+}
+
+std::array<std::vector<Vector3f>, HandSkin::parts> HandSkin::places_W(const HandShape& shape) const {
+  std::array<Eigen::Matrix4f, 16> M;
+  Eigen::Isometry3f flat = Eigen::Isometry3f::Identity();
+  flat.linear() = hand_->R_HW.transpose();
+  flat.translation() = -flat.linear() * bind_place(*figure_, hand_->wrist);
+  M[0] = flat.matrix();
+  for (std::size_t f = 0; f < 5; ++f) {
+    const Bones bones = bones_W(*figure_, *hand_, shape, f);
+    for (std::size_t k = 0; k < 3; ++k) M[1 + 3 * f + k] = bones[k].matrix();
+  }
+  std::array<std::vector<Vector3f>, parts> places;
+  for (std::size_t part = 0; part < parts; ++part) {
+    places[part].reserve(vertices_[part].size());
+    for (const Vertex& v : vertices_[part]) {
+      Vector3f p = Vector3f::Zero();
+      for (std::size_t k = 0; k < 4 && v.weights[k] > 0; ++k) {
+        const Eigen::Matrix4f& m = M[v.bones[k]];
+        p += v.weights[k] * (m.topLeftCorner<3, 3>() * v.p_H + m.topRightCorner<3, 1>());
+      }
+      places[part].push_back(p);
+    }
+  }
+  return places;
 }
 
 }  // namespace counterpart

@@ -1,7 +1,10 @@
-// Hand shapes, and the grip on a piece: the paper's second subtask.
+// Hand shapes, and where a shaped hand's fingertips and skin are.
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -23,7 +26,8 @@ struct HandShape {
 
 HandShape blend(const HandShape& a, const HandShape& b, float t);
 
-// "relaxed", "flat", "fist", "point", "open", "thumb_up", "chin", "watch"; unknown names give "relaxed".
+// "relaxed", "flat", "fist", "point", "open", "thumb_up", "chin", "rest", "grip", "tap_a", "tap_b"; unknown names give
+// "relaxed".
 HandShape hand_shape(const std::string& name);
 
 void apply(const Figure& figure, const HandParts& hand, const HandShape& shape, BodyPose& pose);
@@ -37,15 +41,29 @@ struct Fingertip {
 // In the hand frame W.
 Fingertip fingertip_W(const Figure& figure, const HandParts& hand, const HandShape& shape, std::size_t finger);
 
-// The grip frame P is the piece's: origin at the centre of its foot, z up, x the way the hand points.
-struct Grip {
-  HandShape open;
-  HandShape closed;
-  Eigen::Isometry3f X_WP = Eigen::Isometry3f::Identity();  // where the piece lies in the hand
-  float residual_mm = 0;                                   // largest distance of a pad from the rim in the closed grip
-};
+// The skin of a hand as it is drawn, by finger and palm, for hands that have to touch things.
+class HandSkin {
+ public:
+  static constexpr std::size_t palm = 5, parts = 6;
 
-// Thumb against index and middle finger on the rim of a disc, tips down, found by Gauss-Newton on the pads' places.
-Grip grip_on_disc(const Figure& figure, const HandParts& hand, float radius_m, float height_m);
+  // Both have to outlive it.
+  HandSkin(const Figure& figure, const HandParts& hand);
+
+  // Every vertex in the hand frame W.
+  std::array<std::vector<Eigen::Vector3f>, parts> places_W(const HandShape& shape) const;
+
+ private:
+  struct Vertex {
+    Eigen::Vector3f p_H;
+    std::array<std::uint8_t, 4> bones;
+    std::array<float, 4> weights;
+  };
+
+  void add(const FigurePart& part, std::size_t v, const std::vector<int>& place);
+
+  const Figure* figure_;
+  const HandParts* hand_;
+  std::array<std::vector<Vertex>, parts> vertices_;
+};
 
 }  // namespace counterpart

@@ -13,8 +13,12 @@ using Eigen::Vector3f;
 // A limb is never pulled quite straight: a stretched arm looks dead and its elbow has no direction.
 constexpr float longest_share = 0.995F;
 
+// Nor is it ever closed farther than flesh lets it.
+constexpr float most_bent_rad = 2.6F;
+
 float usable_distance(const Limb& limb, float distance) {
-  const float shortest = std::abs(limb.upper_m - limb.lower_m) + 0.12F * limb.length_m();
+  const float shortest = std::sqrt(limb.upper_m * limb.upper_m + limb.lower_m * limb.lower_m +
+                                   2 * limb.upper_m * limb.lower_m * std::cos(most_bent_rad));
   return std::clamp(distance, shortest, longest_share * limb.length_m());
 }
 

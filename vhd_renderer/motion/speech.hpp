@@ -1,9 +1,11 @@
-// A mouth that moves with what is said: shapes by sound, from the text alone.
+// A mouth that moves with what is said: shapes by letter; how wide it opens, and when, by the sound where there is one.
 #pragma once
 
 #include <map>
 #include <string>
 #include <vector>
+
+#include "vhd_renderer/voice/sound.hpp"
 
 namespace counterpart {
 
@@ -17,17 +19,24 @@ struct MouthShape {
 class Utterance {
  public:
   Utterance() = default;
-  explicit Utterance(const std::string& text);
+
+  // `sound`: the same text spoken, or null: then letters follow each other at a usual pace.
+  explicit Utterance(const std::string& text, const Sound* sound = nullptr);
 
   double duration_s() const { return duration_s_; }
   MouthShape at(double t_s) const;
 
  private:
-  struct Sound {
+  struct Letter {
     double start_s = 0;
     MouthShape shape;
   };
-  std::vector<Sound> sounds_;
+
+  void fit_to(const Sound& sound);
+  float loudness(double t_s) const;
+
+  std::vector<Letter> letters_;
+  std::vector<float> loudness_;  // 0..1, a value every window; empty: no sound
   double duration_s_ = 0;
 };
 

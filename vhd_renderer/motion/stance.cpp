@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "protocol/vocabulary/pose_eigen.hpp"
 #include "vhd_renderer/motion/curves.hpp"
 
 namespace counterpart {
@@ -12,7 +13,6 @@ using Eigen::Quaternionf;
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-constexpr float chair_seat_m = 0.45F;
 constexpr double lower_s = 1.25;  // until he sits
 constexpr double scoot_s = 1.35;  // until he sits at the board
 constexpr float stance_half_m = 0.085F;
@@ -24,6 +24,12 @@ Quaternionf hand_rotation(const Vector3f& fingers, const Vector3f& palm) {
   Eigen::Matrix3f R;
   R << x, z.cross(x), z;
   return Quaternionf(R);
+}
+
+// The hand lies on the table before the board, its palm down, pointing inwards.
+Quaternionf resting_rotation(std::size_t side) {
+  const float s = side == right_side ? 1.F : -1.F;
+  return hand_rotation(Vector3f(-s * 0.80F, 0.60F, -0.06F), Vector3f(-s * 0.10F, 0, -1));
 }
 
 FootGoal seated_foot(const Home& home, std::size_t side, const Anatomy& anatomy) {
@@ -42,6 +48,7 @@ void sitting_moment(double t_s, const Home& home, const Anatomy& a, BodyControls
   const float stand_z = home.floor_z + standing_hip_height(a);
   const float back = minimum_jerk(t / (0.95F * static_cast<float>(lower_s)));
   c.heading_rad = 0;
+  c.chair_y = lerp(home.chair_back_y, home.seat_y, in);
   c.pelvis_S = {0, lerp(lerp(home.chair.p_S.y(), home.chair_back_y, back), home.seat_y, in),
                 lerp(stand_z, home.seat_hip_z, down)};
   const float leaning = bump(0.08F + 0.84F * t / static_cast<float>(lower_s)) - bump(0.08F);
@@ -65,23 +72,38 @@ void sitting_moment(double t_s, const Home& home, const Anatomy& a, BodyControls
   seatedness = minimum_jerk((t - static_cast<float>(lower_s) * 0.55F) / (0.45F * static_cast<float>(lower_s)) - 0.F);
 }
 
+// The side of the scene's table that is nearest to him, in S.
+float table_edge_y(const Scene& scene, float otherwise) {
+  for (const SceneBox& box : scene.boxes) {
+    if (box.name != "table") continue;
+    const Eigen::Isometry3f X_BO = to_eigen(box.X_BO).cast<float>();
+    const Vector3f half = to_eigen(box.size_m).cast<float>() / 2;
+    const float reach = X_BO.linear().row(1).cwiseAbs().dot(half);
+    return (scene.virtual_side == Side::dark ? -1.F : 1.F) * X_BO.translation().y() - reach;
+  }
+  return otherwise;
+}
+
 }  // namespace
 
-Home home_of(const Scene& scene, const Anatomy& a) {
+Home home_of(const Scene& scene, const Anatomy& a, const std::array<float, 2>& rest_depth_m) {
   Home home;
   const auto floor = static_cast<float>(-scene.table_height_m);
   const auto edge = static_cast<float>(0.5 * scene.board.squares * scene.board.square_size_m + scene.board.border_m);
   home.floor_z = floor;
-  home.seat_y = -edge - 0.14F - a.belly_m;
+  home.table_z = static_cast<float>(-scene.board.thickness_m);
+  home.table_edge_y = table_edge_y(scene, -edge - usual_table_beyond_board_m);
+  home.seat_y = home.table_edge_y - 0.02F - a.belly_m;
   home.seat_hip_z = floor + chair_seat_m + a.seat_to_hip_m;
   home.chair = {{0, home.seat_y - 0.15F}, 0};
   home.chair_back_y = home.chair.p_S.y() - 0.26F;
   home.entrance = {{1.75F, home.chair.p_S.y() - 0.75F}, pi_f / 2};
   home.away = {{2.9F, home.chair.p_S.y() - 1.1F}, -pi_f / 2};
-  const auto top = static_cast<float>(-scene.board.thickness_m);
   for (const std::size_t s : {left_side, right_side}) {
     const float side = s == right_side ? 1.F : -1.F;
-    home.rest_hand[s] = {side * (s == right_side ? 0.175F : 0.16F), -edge - 0.035F, top};
+    // Before the board, between its rim and the table's edge, or a little beyond where there is no room.
+    const float y = std::max(home.table_edge_y + 0.035F, -edge - 0.135F);
+    home.rest_wrist[s] = {side * (s == right_side ? 0.235F : 0.215F), y, home.table_z + rest_depth_m[s] + 0.001F};
     // Shins a little forward of upright.
     const Limb& leg = a.legs[s].limb;
     home.seat_feet[s] = {{side * 0.115F, home.seat_y + leg.upper_m * 0.97F + (s == right_side ? 0.0F : 0.06F)}, 0};
@@ -163,14 +185,20 @@ ArmGoal hanging_arm(const Anatomy& a, const BodyControls& c, std::size_t side, f
 }
 
 ArmGoal resting_arm(const Home& home, std::size_t side) {
-  const float s = side == right_side ? 1.F : -1.F;
   ArmGoal goal;
-  // The hand lies on the table before the board, its palm down, pointing inwards.
-  const Vector3f fingers = Vector3f(-s * 0.62F, 0.78F, -0.10F).normalized();
-  goal.wrist_S = home.rest_hand[side] + Vector3f(s * 0.045F, -0.075F, 0.036F);
-  goal.R_SW = hand_rotation(fingers, Vector3f(-s * 0.12F, 0, -1));
-  goal.shape = hand_shape("relaxed");
+  goal.wrist_S = home.rest_wrist[side];
+  goal.R_SW = resting_rotation(side);
+  goal.shape = hand_shape("rest");
   return goal;
+}
+
+float resting_depth_m(const Figure& figure, const HandParts& hand, std::size_t side) {
+  float lowest = 0;
+  const Quaternionf R_SW = resting_rotation(side);
+  for (const auto& part : HandSkin(figure, hand).places_W(hand_shape("rest"))) {
+    for (const Vector3f& p_W : part) lowest = std::min(lowest, (R_SW * p_W).z());
+  }
+  return -lowest;
 }
 
 }  // namespace counterpart

@@ -12,20 +12,28 @@
 
 namespace counterpart {
 
-// Places in the seat frame S, measured from the board and the body.
+// How far a table goes beyond the board towards him where the scene has no box named "table".
+inline constexpr float usual_table_beyond_board_m = 0.19F;
+
+inline constexpr float chair_seat_m = 0.45F;  // over the floor
+
+// Places in the seat frame S, measured from the board, the table and the body.
 struct Home {
   float floor_z = -0.74F;
+  float table_z = -0.015F;
+  float table_edge_y = -0.42F;  // of the table, on his side
   float seat_y = -0.51F;        // of the hips when he sits at the board
   float seat_hip_z = -0.19F;    // height of the hip joints then
   float chair_back_y = -0.90F;  // of the hips when he has just sat down
   Place chair;                  // standing before the chair
   Place entrance;
   Place away;
-  std::array<Eigen::Vector3f, 2> rest_hand{};  // foot of the hand on the table
+  std::array<Eigen::Vector3f, 2> rest_wrist{};  // on the table, hands at rest
   std::array<Place, 2> seat_feet;
 };
 
-Home home_of(const Scene& scene, const Anatomy& anatomy);
+// `rest_depth_m`: see resting_depth_m.
+Home home_of(const Scene& scene, const Anatomy& anatomy, const std::array<float, 2>& rest_depth_m = {0.03F, 0.03F});
 
 enum class Posture : std::uint8_t { standing, seated };
 
@@ -55,5 +63,8 @@ void sit(const Home& home, const Anatomy& anatomy, BodyControls& controls);
 // Where an arm is when it has nothing to do.
 ArmGoal hanging_arm(const Anatomy& anatomy, const BodyControls& controls, std::size_t side, float swing);
 ArmGoal resting_arm(const Home& home, std::size_t side);
+
+// How far a resting hand's skin reaches below its wrist: by so much the wrist is over the table.
+float resting_depth_m(const Figure& figure, const HandParts& hand, std::size_t side);
 
 }  // namespace counterpart

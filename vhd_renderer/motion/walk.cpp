@@ -10,8 +10,10 @@ namespace {
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 
-constexpr float metres_per_radian = 0.22F;  // how much walking a turn on the spot is worth
+constexpr float metres_per_radian = 0.42F;  // how much walking a turn on the spot is worth
 constexpr float late_lift = 0.56F;          // of a step: how far the pelvis has passed a foot when it lifts
+
+constexpr float heel_off = radians(15);  // of a foot that still bears: the more, the more its sole has to slide
 
 float heading_of(const Vector2f& d) {
   return std::atan2(-d.x(), d.y());
@@ -170,7 +172,7 @@ FootGoal Walk::foot(std::size_t side, float s) const {
     if (falls[i].lift < length_ + 1) {
       const float reach = falls[i].lift - falls[i].at;
       const float late = unit_clamp((s - falls[i].at - 0.25F * reach) / (0.75F * reach));
-      goal.pitch_rad = radians(26) * late * late;
+      goal.pitch_rad = heel_off * late * late;
     }
     return goal;
   }
@@ -178,12 +180,11 @@ FootGoal Walk::foot(std::size_t side, float s) const {
   const float stride = std::min(1.F, (next.ball_S - goal.ball_S).norm() / (1.6F * style_.step_m));
   const float u = (s - falls[i].lift) / (falls[i + 1].land - falls[i].lift);
   const float w = minimum_jerk(u);
-  const float pitch0 = radians(26);
   FootGoal swing;
   swing.ball_S = goal.ball_S + (next.ball_S - goal.ball_S) * w;
   swing.ball_S.z() = style_.lift_m * (0.35F + 0.65F * stride) * bump(u);
   swing.heading_rad = lerp(goal.heading_rad, next.heading_rad, w);
-  swing.pitch_rad = pitch0 * (1 - minimum_jerk(u * 1.4F));
+  swing.pitch_rad = heel_off * (1 - minimum_jerk(u * 1.4F)) + radians(18) * bump(u * 1.4F);
   return swing;
 }
 

@@ -5,14 +5,15 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 
 extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
 #include <libavutil/opt.h>
-#include <libswscale/swscale.h>
 }
+
+#include "vhd_renderer/output/ffmpeg_handles.hpp"
+#include "vhd_renderer/output/sound_track.hpp"
 
 namespace counterpart {
 namespace {
@@ -25,28 +26,9 @@ std::string sentence(const char* what, const std::string& file, int code) {
   return std::string("cannot ") + what + " film '" + file + "': " + reason;
 }
 
-struct FormatDeleter {
-  void operator()(AVFormatContext* format) const {
-    if (format->pb != nullptr) avio_closep(&format->pb);
-    avformat_free_context(format);
-  }
-};
-struct CodecDeleter {
-  void operator()(AVCodecContext* codec) const { avcodec_free_context(&codec); }
-};
-struct FrameDeleter {
-  void operator()(AVFrame* frame) const { av_frame_free(&frame); }
-};
-struct PacketDeleter {
-  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
-};
-struct ScalerDeleter {
-  void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
-};
-
 class Film final : public Output {
  public:
-  explicit Film(std::string file) : file_(std::move(file)) {}
+  Film(std::string file, int sound_rate_hz) : file_(std::move(file)), sound_rate_hz_(sound_rate_hz) {}
   ~Film() override { static_cast<void>(finish()); }
   Film(const Film&) = delete;
   Film& operator=(const Film&) = delete;
@@ -66,13 +48,28 @@ class Film final : public Output {
     const std::int64_t ticks = (stamp_ns - first_ns_) / (1'000'000'000 / kTicksPerSecond);
     frame_->pts = ticks > last_ticks_ ? ticks : last_ticks_ + 1;  // a film's time only goes forwards
     last_ticks_ = frame_->pts;
+    const double now_s = 1e-9 * static_cast<double>(stamp_ns - first_ns_);
+    if (track_) {
+      if (const int code = track_->write(heard_.get(), heard_from_s_, now_s); code < 0) return trouble("encode", code);
+    }
+    heard_ = std::move(coming_);
+    heard_from_s_ = coming_from_s_;
     return encode(frame_.get());
+  }
+
+  void hear(std::shared_ptr<const Sound> sound, double from_s) override {
+    coming_ = std::move(sound);
+    coming_from_s_ = from_s;
   }
 
   Result<void> finish() override {
     if (!format_) return {};
     auto flushed = encode(nullptr);
+    if (track_ && flushed) {
+      if (const int code = track_->finish(); code < 0) flushed = trouble("encode", code);
+    }
     const int code = av_write_trailer(format_.get());
+    track_.reset();
     format_.reset();
     if (!flushed) return flushed;
     if (code < 0) return failure(ErrorCode::io, sentence("finish", file_, code));
@@ -105,6 +102,14 @@ class Film final : public Output {
     stream_ = avformat_new_stream(format, nullptr);
     stream_->time_base = codec_->time_base;
     avcodec_parameters_from_context(stream_->codecpar, codec_.get());
+    if (sound_rate_hz_ > 0) {
+      auto track = SoundTrack::add_to(*format, sound_rate_hz_);
+      if (!track) {
+        format_.reset();
+        return tl::make_unexpected(track.error());
+      }
+      track_.emplace(std::move(*track));
+    }
     if (const int code = avio_open(&format->pb, file_.c_str(), AVIO_FLAG_WRITE); code < 0) return give_up("open", code);
     format->flags |= AVFMT_FLAG_FLUSH_PACKETS;  // on disk as soon as a fragment is whole
     AVDictionary* options = nullptr;
@@ -123,26 +128,18 @@ class Film final : public Output {
     return {};
   }
 
+  Result<void> trouble(const char* what, int code) const { return failure(ErrorCode::io, sentence(what, file_, code)); }
+
   Result<void> give_up(const char* what, int code) {
+    track_.reset();
     format_.reset();
-    return failure(ErrorCode::io, sentence(what, file_, code));
+    return trouble(what, code);
   }
 
   // null: flushes what the encoder still holds.
   Result<void> encode(const AVFrame* frame) {
-    if (const int code = avcodec_send_frame(codec_.get(), frame); code < 0) {
-      return failure(ErrorCode::io, sentence("encode", file_, code));
-    }
-    for (;;) {
-      const int code = avcodec_receive_packet(codec_.get(), packet_.get());
-      if (code == AVERROR(EAGAIN) || code == AVERROR_EOF) return {};
-      if (code < 0) return failure(ErrorCode::io, sentence("encode", file_, code));
-      av_packet_rescale_ts(packet_.get(), codec_->time_base, stream_->time_base);
-      packet_->stream_index = stream_->index;
-      if (const int written = av_interleaved_write_frame(format_.get(), packet_.get()); written < 0) {
-        return failure(ErrorCode::io, sentence("write", file_, written));
-      }
-    }
+    const int code = encode_into(*format_, *codec_, *stream_, *packet_, frame);
+    return code < 0 ? trouble("encode", code) : Result<void>{};
   }
 
   std::string file_;
@@ -152,19 +149,25 @@ class Film final : public Output {
   std::unique_ptr<AVPacket, PacketDeleter> packet_;
   std::unique_ptr<SwsContext, ScalerDeleter> scaler_;
   AVStream* stream_ = nullptr;  // owned by format_
+  int sound_rate_hz_ = 0;       // 0: mute
+  std::optional<SoundTrack> track_;
+  std::shared_ptr<const Sound> heard_;  // since the last picture, from heard_from_s_ on
+  std::shared_ptr<const Sound> coming_;
+  double heard_from_s_ = 0;
+  double coming_from_s_ = 0;
   std::int64_t first_ns_ = 0;
   std::int64_t last_ticks_ = -1;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<Output>> open_film(const std::string& file) {
+Result<std::unique_ptr<Output>> open_film(const std::string& file, int sound_rate_hz) {
   av_log_set_level(AV_LOG_ERROR);
   // Refused now rather than with the first picture, minutes later.
   if (!std::ofstream(file, std::ios::binary | std::ios::trunc)) {
     return failure(ErrorCode::io, "cannot write film '" + file + "': " + std::strerror(errno));
   }
-  return std::make_unique<Film>(file);
+  return std::make_unique<Film>(file, sound_rate_hz);
 }
 
 }  // namespace counterpart

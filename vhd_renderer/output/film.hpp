@@ -9,6 +9,7 @@
 namespace counterpart {
 
 // The file is opened with the first picture, whose size becomes the film's; odd sizes lose their last row or column.
-[[nodiscard]] Result<std::unique_ptr<Output>> open_film(const std::string& file);
+// sound_rate_hz 0: a film without sound.
+[[nodiscard]] Result<std::unique_ptr<Output>> open_film(const std::string& file, int sound_rate_hz);
 
 }  // namespace counterpart

@@ -33,6 +33,11 @@ void MirrorState::set_subtitle(const std::string& text) {
   ++version_;
 }
 
+void MirrorState::set_speech(std::uint64_t number) {
+  speech_ = number;
+  ++version_;
+}
+
 void MirrorState::set(const MirrorStatus& status) {
   status_ = status;
   ++version_;
@@ -50,6 +55,7 @@ std::string MirrorState::json() const {
                      {"board", nullptr},
                      {"feedback", nullptr},
                      {"subtitle", subtitle_},
+                     {"speech", speech_},
                      {"picture", {{"width", width_}, {"height", height_}}},
                      {"status",
                       {{"fps", status_.fps},

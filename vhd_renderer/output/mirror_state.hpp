@@ -15,6 +15,7 @@ class MirrorState {
   void add(const GameEvent& event);
   void set(const Feedback& feedback);
   void set_subtitle(const std::string& text);
+  void set_speech(std::uint64_t number);  // of what is being heard; 0: nothing
   void set(const MirrorStatus& status);
   void set_picture_size(int width, int height);
 
@@ -28,6 +29,7 @@ class MirrorState {
   std::deque<GameEvent> events_;  // the newest, oldest first
   std::optional<Feedback> feedback_;
   std::string subtitle_;
+  std::uint64_t speech_ = 0;
   MirrorStatus status_;
   int width_ = 0, height_ = 0;  // pixels
 };

@@ -7,9 +7,11 @@
 
 namespace counterpart {
 
-Result<std::unique_ptr<Output>> open_output(const std::string& target) {
+void Output::hear(std::shared_ptr<const Sound>, double) {}
+
+Result<std::unique_ptr<Output>> open_output(const std::string& target, int sound_rate_hz) {
   const std::filesystem::path path(target);
-  if (path.extension() == ".mp4") return open_film(target);
+  if (path.extension() == ".mp4") return open_film(target, sound_rate_hz);
   if (path.has_extension() && !std::filesystem::is_directory(path)) {
     return failure(ErrorCode::unsupported,
                    "cannot write '" + target + "': give a name ending in .mp4, or a folder for PNG pictures");

@@ -15,6 +15,7 @@
 #include "protocol/transport/jpeg.hpp"
 #include "vhd_renderer/output/mirror_page.hpp"
 #include "vhd_renderer/output/mirror_state.hpp"
+#include "vhd_renderer/voice/wav.hpp"
 
 namespace counterpart {
 namespace {
@@ -111,6 +112,20 @@ class WebMirror::Server {
     wake();
   }
 
+  void hear(const std::shared_ptr<const Sound>& sound) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (sound == heard_now_) return;
+      heard_now_ = sound;
+      if (sound != nullptr) {
+        heard_last_ = sound;
+        ++speeches_;
+      }
+      state_.set_speech(sound != nullptr ? speeches_ : 0);
+    }
+    wake();
+  }
+
   std::vector<Control> take_controls() {
     const std::lock_guard lock(mutex_);
     return std::exchange(controls_, {});
@@ -176,6 +191,7 @@ class WebMirror::Server {
       if (target == "/state.json") return reply(http::status::ok, "application/json", server_.state().second);
       if (target == "/healthz") return reply(http::status::ok, "text/plain", "fine\n");
       if (target == "/frame.jpg") return frame();
+      if (target == "/speech.wav") return speech();
       if (target == "/stream.mjpg" && !head_only_)
         return stream(Kind::pictures, "multipart/x-mixed-replace; boundary=frame");
       if (target == "/events" && !head_only_) return stream(Kind::states, "text/event-stream");
@@ -186,6 +202,12 @@ class WebMirror::Server {
       const auto [number, jpeg] = server_.jpeg();
       if (jpeg == nullptr) return reply(http::status::service_unavailable, "text/plain", "no picture yet\n");
       reply(http::status::ok, "image/jpeg", std::string(jpeg->begin(), jpeg->end()));
+    }
+
+    void speech() {
+      const auto sound = server_.speech();
+      if (sound == nullptr) return reply(http::status::not_found, "text/plain", "nothing was said yet\n");
+      reply(http::status::ok, "audio/wav", encode_wav(*sound));
     }
 
     void control(const Request& request) {
@@ -344,6 +366,11 @@ class WebMirror::Server {
     return {state_.version(), state_.json()};
   }
 
+  std::shared_ptr<const Sound> speech() {
+    const std::lock_guard lock(mutex_);
+    return heard_last_;
+  }
+
   // The newest picture as JPEG, compressed once whoever asks.
   std::pair<std::uint64_t, Jpeg> jpeg() {
     std::uint64_t number = 0;
@@ -387,6 +414,8 @@ class WebMirror::Server {
   std::optional<VideoFrame> picture_;
   std::uint64_t picture_number_ = 0, jpeg_number_ = 0;
   Jpeg jpeg_;
+  std::shared_ptr<const Sound> heard_now_, heard_last_;
+  std::uint64_t speeches_ = 0;
   std::vector<Control> controls_;
   // Ids of controls are unique for their sender; this one starts afresh with every run.
   std::uint64_t last_control_ = static_cast<std::uint64_t>(
@@ -429,6 +458,10 @@ void WebMirror::feedback(const Feedback& feedback) {
 
 void WebMirror::subtitle(const std::string& text) {
   server_->change([&](MirrorState& mirror) { mirror.set_subtitle(text); });
+}
+
+void WebMirror::speech(const std::shared_ptr<const Sound>& sound) {
+  server_->hear(sound);
 }
 
 void WebMirror::status(const MirrorStatus& status) {

@@ -3,6 +3,7 @@
 //   GET  /             the page, which needs nothing from outside
 //   GET  /stream.mjpg  the picture, as it changes (multipart/x-mixed-replace)
 //   GET  /frame.jpg    the picture as it is now
+//   GET  /speech.wav   what was said last, if it can be heard; its number stands in the state as "speech"
 //   GET  /state.json   everything else that is known, as JSON
 //   GET  /events       the same as Server-Sent Events, again with every change
 //   POST /control      a Control as JSON (docs/protocol.md, section 2), its id may be left out
@@ -19,6 +20,7 @@
 #include "protocol/vocabulary/game.hpp"
 #include "protocol/vocabulary/result.hpp"
 #include "protocol/vocabulary/video.hpp"
+#include "vhd_renderer/voice/sound.hpp"
 
 namespace counterpart {
 
@@ -47,7 +49,8 @@ class WebMirror {
   void say(const BoardState& state);
   void event(const GameEvent& event);
   void feedback(const Feedback& feedback);
-  void subtitle(const std::string& text);  // empty: nothing is being said
+  void subtitle(const std::string& text);                  // empty: nothing is being said
+  void speech(const std::shared_ptr<const Sound>& sound);  // what is being heard; null: nothing
   void status(const MirrorStatus& status);
 
   // What people asked for since the last call, in order.

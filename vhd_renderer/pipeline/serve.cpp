@@ -23,6 +23,7 @@
 #include "vhd_renderer/pipeline/director_port.hpp"
 #include "vhd_renderer/pipeline/pairing.hpp"
 #include "vhd_renderer/scene/virtual_scene.hpp"
+#include "vhd_renderer/voice/espeak.hpp"
 
 namespace counterpart {
 namespace {
@@ -39,7 +40,7 @@ class RendererDaemon {
         port_(std::move(port)),
         pairing_(options.lockstep ? PairingPolicy::every : PairingPolicy::newest),
         figure_(std::move(figure)),
-        director_(figure_) {}
+        director_(figure_, espeak_speaker(voice_of(options.character))) {}
 
   [[nodiscard]] Result<void> open_outputs();
   [[nodiscard]] Result<void> run();
@@ -84,7 +85,7 @@ class RendererDaemon {
 
 Result<void> RendererDaemon::open_outputs() {
   for (const std::string& target : options_.outputs) {
-    auto output = open_output(target);
+    auto output = open_output(target, Sound{}.rate_hz);
     if (!output) return tl::make_unexpected(output.error());
     outputs_.push_back(std::move(*output));
   }
@@ -181,6 +182,7 @@ Result<void> RendererDaemon::show(PairedFrame pair) {
   answer(performance);
   ++frames_;
   if (web_) mirror_on_web(mirror, pair.pose, performance);
+  for (auto& output : outputs_) output->hear(performance.sound, performance.sound_s);
   return put_out(mirror, now_ns_);
 }
 
@@ -198,6 +200,7 @@ void RendererDaemon::mirror_on_web(const cv::Mat& mirror, const PoseEstimate& po
     web_->show(std::move(picture));
   }
   web_->subtitle(performance.subtitle);
+  web_->speech(performance.sound);
   for (const Feedback& feedback : performance.feedback) web_->feedback(feedback);
   for (const Control& control : web_->take_controls()) tracker_->broadcast(control);
   if (frames_ % kStatusFrames == 0) web_->status(status_of(pose));

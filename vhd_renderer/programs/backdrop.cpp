@@ -163,12 +163,13 @@ Result<Backdrop> Backdrop::from_sequence(const fs::path& folder) {
   return backdrop;
 }
 
-Backdrop Backdrop::plain(int width, int height) {
+Backdrop Backdrop::plain(int width, int height, const ViewPoint& from) {
   Backdrop backdrop;
+  backdrop.from_ = from;
   Intrinsics& k = backdrop.intrinsics_;
   k.width = width;
   k.height = height;
-  k.fx = k.fy = 1.12 * height;
+  k.fx = k.fy = from.zoom * height;
   k.cx = (width - 1) / 2.0;
   k.cy = (height - 1) / 2.0;
   return backdrop;
@@ -179,7 +180,8 @@ Result<BackdropFrame> Backdrop::frame(std::size_t index, const Scene& scene) con
   out.view.intrinsics = intrinsics_;
   if (pictures_.empty()) {
     const double side = scene.virtual_side == Side::light ? 1 : -1;
-    out.view.X_CB = look_at_X_CB({0.10 * side, 0.92 * side, 0.62}, {0, -0.20 * side, 0.10});
+    const Eigen::Vector3d turned(side, side, 1);
+    out.view.X_CB = look_at_X_CB(from_.eye_B.cwiseProduct(turned), from_.look_at_B.cwiseProduct(turned));
     out.bgr = painted_room(out.view, scene);
     return out;
   }

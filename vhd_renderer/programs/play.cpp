@@ -19,6 +19,7 @@
 #include "vhd_renderer/programs/backdrop.hpp"
 #include "vhd_renderer/programs/script.hpp"
 #include "vhd_renderer/scene/virtual_scene.hpp"
+#include "vhd_renderer/voice/espeak.hpp"
 
 namespace counterpart {
 namespace {
@@ -29,7 +30,11 @@ struct PlayOptions {
   std::string out;
   std::string background;
   std::string size = "720x576";
+  std::vector<double> eye;
+  std::vector<double> look_at;
+  double zoom = ViewPoint{}.zoom;
   std::string opponent;
+  bool mute = false;
   double fps = 25;
   double seconds = 0;  // 0: until every command has ended
 };
@@ -60,18 +65,29 @@ Result<Backdrop> backdrop_of(const PlayOptions& options) {
   if (!read || width < 64 || height < 64 || width > 4096 || height > 4096) {
     return failure(ErrorCode::invalid_argument, "--size " + options.size + ": give WIDTHxHEIGHT, each from 64 to 4096");
   }
-  return Backdrop::plain(width, height);
+  ViewPoint from;
+  const auto place = [](const std::vector<double>& given, Eigen::Vector3d& into) {
+    if (!given.empty()) into = {given[0], given[1], given[2]};
+  };
+  place(options.eye, from.eye_B);
+  place(options.look_at, from.look_at_B);
+  from.zoom = options.zoom;
+  if ((from.eye_B - from.look_at_B).head<2>().norm() < 0.01) {
+    return failure(ErrorCode::invalid_argument, "--eye and --look-at: the camera may not look straight up or down");
+  }
+  return Backdrop::plain(width, height, from);
 }
 
 // The film: what the director shows, drawn over the backdrop.
 class Film {
  public:
-  static Result<Film> open(const PlayOptions& options, const Figure& figure) {
+  // speaks: there will be something to hear.
+  static Result<Film> open(const PlayOptions& options, const Figure& figure, bool speaks) {
     auto backdrop = backdrop_of(options);
     if (!backdrop) return tl::make_unexpected(backdrop.error());
     auto drawing = VirtualScene::create(backdrop->width(), backdrop->height(), figure);
     if (!drawing) return tl::make_unexpected(drawing.error());
-    auto output = open_output(options.out);
+    auto output = open_output(options.out, speaks ? Sound{}.rate_hz : 0);
     if (!output) return tl::make_unexpected(output.error());
     return Film(std::move(*backdrop), std::move(*drawing), std::move(*output));
   }
@@ -89,6 +105,7 @@ class Film {
       picture = composite(behind.bgr, *drawn, nullptr, how);
     }
     ++index_;
+    output_->hear(performance.sound, performance.sound_s);
     return output_->write(picture, now_ns);
   }
 
@@ -111,11 +128,15 @@ Result<void> play(const PlayOptions& options) {
   if (!script) return tl::make_unexpected(script.error());
   std::string opponent = options.opponent;
   std::size_t open = 0;
+  bool speaks = false;
   for (const ScriptLine& line : *script) {
     if (const auto* scene = std::get_if<Scene>(&line.what); scene != nullptr && opponent.empty()) {
       opponent = scene->opponent;
     }
-    if (std::holds_alternative<Command>(line.what)) ++open;
+    if (const auto* command = std::get_if<Command>(&line.what); command != nullptr) {
+      ++open;
+      speaks = speaks || std::holds_alternative<Say>(command->action);
+    }
   }
   auto figure = figure_of(opponent.empty() ? "default" : opponent);
   if (!figure && options.opponent.empty()) {
@@ -131,12 +152,12 @@ Result<void> play(const PlayOptions& options) {
 
   std::optional<Film> film;
   if (!options.out.empty()) {
-    auto opened = Film::open(options, *figure);
+    auto opened = Film::open(options, *figure, speaks);
     if (!opened) return tl::make_unexpected(opened.error());
     film.emplace(std::move(*opened));
   }
 
-  Director director(*figure);
+  Director director(*figure, options.mute ? Speaker{} : espeak_speaker(voice_of(opponent)));
   Scene shown;
   const auto limit = static_cast<std::int64_t>((options.seconds > 0 ? options.seconds : 3600) * options.fps);
   std::size_t next = 0;
@@ -193,8 +214,17 @@ void add_play(CLI::App& app, int& exit_code) {
                       "a SEQUENCE folder: pictures, camera.json, poses.csv; without it a plain room is painted");
   command->add_option("--size", options->size, "of the picture with the plain room, WIDTHxHEIGHT")
       ->capture_default_str();
+  const auto three = [&](const char* name, std::vector<double>& into, const char* what) {
+    command->add_option(name, into, what)->expected(3)->delimiter(',')->check(CLI::Range(-20.0, 20.0));
+  };
+  three("--eye", options->eye, "where the plain room is seen from, X,Y,Z in B, metres");
+  three("--look-at", options->look_at, "what is in the middle of the picture then, X,Y,Z");
+  command->add_option("--zoom", options->zoom, "focal length of the plain room's camera, in heights of the picture")
+      ->check(CLI::Range(0.2, 20.0))
+      ->capture_default_str();
   command->add_option("--opponent", options->opponent,
                       "which human: default, ines, kenji, amara, mannequin, a GLB file");
+  command->add_flag("--mute", options->mute, "what is said is only shown, not spoken");
   command->add_option("--fps", options->fps, "frames a second")->check(CLI::Range(1.0, 240.0))->capture_default_str();
   command->add_option("--seconds", options->seconds, "how long; 0: until every command has ended")
       ->check(CLI::Range(0.0, 36000.0));

@@ -5,15 +5,24 @@
 #include <map>
 
 #include "protocol/vocabulary/pose_eigen.hpp"
+#include "vhd_renderer/body/simplify.hpp"
 #include "vhd_renderer/draw/piece_shape.hpp"
+#include "vhd_renderer/motion/stance.hpp"
+#include "vhd_renderer/scene/chair_shape.hpp"
 #include "vhd_renderer/scene/scene_state.hpp"
 
 namespace counterpart {
 namespace {
 
-// If nobody says how large the table is: as far as a person sits from a board, and wide.
-constexpr float kTableBeyondBoard_m = 0.20f;
-constexpr float kTableWidth_m = 1.6f;
+// What a picture of this height cannot show of somebody who sits as near as people sit.
+float shown_error_m(int height) {
+  constexpr float kNearest_m = 0.8f;
+  constexpr float kFocalHeights = 1.1f;  // a usual focal length, in heights of the picture
+  constexpr float kPixels = 0.35f;
+  return kPixels * kNearest_m / (kFocalHeights * static_cast<float>(height));
+}
+
+constexpr float kTableWidth_m = 1.6f;  // if nobody says how wide it is
 
 Eigen::Affine3f at(const Eigen::Vector3f& p_B) {
   return Eigen::Affine3f(Eigen::Translation3f(p_B));
@@ -91,9 +100,16 @@ const std::string& VirtualScene::description() const {
   return state_->renderer->description();
 }
 
-Result<std::unique_ptr<VirtualScene>> VirtualScene::create(int width, int height, const Figure& figure) {
+std::size_t VirtualScene::human_triangles() const {
+  std::size_t count = 0;
+  for (const FigurePart& part : state_->figure.parts) count += part.triangles.size() / 3;
+  return count;
+}
+
+Result<std::unique_ptr<VirtualScene>> VirtualScene::create(int width, int height, const Figure& figure,
+                                                           LevelOfDetail detail) {
   auto state = std::make_unique<State>();
-  state->figure = figure;
+  state->figure = detail == LevelOfDetail::all ? figure : simplified(figure, shown_error_m(height));
   auto renderer = Renderer::create(width, height, 1024);
   if (!renderer) return tl::make_unexpected(renderer.error());
   state->renderer = std::move(*renderer);
@@ -137,10 +153,12 @@ Result<void> VirtualScene::State::furnish(const BoardGeometry& geometry) {
   MeshData board_body = box_mesh({side, side, thickness});
   for (Eigen::Vector3f& p : board_body.positions_m) p.z() -= thickness / 2;
   append(board_body, plane_mesh(side, side, 16, 16), {0, 0, 0});
-  for (const auto& [id, mesh] : {std::pair{&piece_mesh, piece_shape(geometry, 36)},
-                                 {&board_mesh, board_body},
-                                 {&table_mesh, plane_mesh(kTableWidth_m, 2 * (side / 2 + kTableBeyondBoard_m), 24, 16)},
-                                 {&unit_box, box_mesh({1, 1, 1})}}) {
+  for (const auto& [id, mesh] :
+       {std::pair{&piece_mesh, piece_shape(geometry, 36)},
+        {&board_mesh, board_body},
+        {&table_mesh, plane_mesh(kTableWidth_m, 2 * (side / 2 + usual_table_beyond_board_m), 24, 16)},
+        {&unit_box, box_mesh({1, 1, 1})},
+        {&chair_mesh, chair_shape()}}) {
     const Result<MeshId> added = renderer->add_mesh(mesh);
     if (!added) return tl::make_unexpected(added.error());
     *id = *added;
@@ -151,7 +169,7 @@ Result<void> VirtualScene::State::furnish(const BoardGeometry& geometry) {
 }
 
 std::vector<DrawItem> VirtualScene::State::items(const Scene& scene, std::span<const StagedPiece> pieces,
-                                                 std::span<const SkinnedPart> parts) {
+                                                 std::span<const SkinnedPart> parts, const Eigen::Isometry3f* X_BC) {
   std::vector<DrawItem> result;  // near things first
   const auto height = static_cast<float>(scene.board.piece_height_m);
 
@@ -199,11 +217,20 @@ std::vector<DrawItem> VirtualScene::State::items(const Scene& scene, std::span<c
     renderer->update_mesh(human[i].mesh, parts[i].positions_m, parts[i].normals);
     result.push_back(human[i]);
   }
+  if (X_BC != nullptr) {
+    DrawItem chair;
+    chair.mesh = chair_mesh;
+    chair.material.texture = grain;
+    chair.material.colour = {0.20f, 0.105f, 0.05f};
+    chair.material.gloss = 0.12f;
+    chair.X_BO = {Eigen::Affine3f(*X_BC)};
+    result.push_back(chair);
+  }
   return result;
 }
 
 Result<RenderedFrame> VirtualScene::draw(const View& view, const Scene& scene, std::span<const StagedPiece> pieces,
-                                         std::span<const SkinnedPart> parts) {
+                                         std::span<const SkinnedPart> parts, const Eigen::Isometry3f* X_BC) {
   State& s = *state_;
   if (view.intrinsics.width != s.renderer->width() || view.intrinsics.height != s.renderer->height()) {
     return failure(ErrorCode::invalid_argument, "The camera's picture is " + std::to_string(view.intrinsics.width) +
@@ -234,12 +261,15 @@ Result<RenderedFrame> VirtualScene::draw(const View& view, const Scene& scene, s
       }
     }
   }
+  if (X_BC != nullptr) {
+    for (const Eigen::Vector3f& p : chair_shape().positions_m) add(*X_BC * p);
+  }
   Eigen::AlignedBox3f body;
   for (const SkinnedPart& part : parts) {
     const std::size_t step = part.positions_m.size() > 2000 ? 4 : 1;
     for (std::size_t i = 0; i < part.positions_m.size(); i += step) {
       body.extend(part.positions_m[i]);
-      if (part.positions_m[i].z() > table_z) add(part.positions_m[i]);
+      add(part.positions_m[i]);  // legs too: they show beside a table and under it
     }
   }
   DrawOptions options;
@@ -254,7 +284,7 @@ Result<RenderedFrame> VirtualScene::draw(const View& view, const Scene& scene, s
     light.shadow_centre_B = shaded.center();
     light.shadow_radius_m = 0.5f * shaded.diagonal().norm();
   }
-  const Drawing drawing = s.renderer->draw(view, light, s.items(scene, pieces, parts), options);
+  const Drawing drawing = s.renderer->draw(view, light, s.items(scene, pieces, parts, X_BC), options);
   return split_drawing(drawing.bgra, *options.box);
 }
 

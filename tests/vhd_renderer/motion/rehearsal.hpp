@@ -25,7 +25,9 @@ inline Scene board_with(const std::vector<std::pair<std::string, int>>& pieces) 
 }
 
 struct Rehearsal {
-  Figure figure = mannequin();
+  explicit Rehearsal(Figure who = mannequin()) : figure(std::move(who)) {}
+
+  Figure figure;
   Director director{figure};
   std::int64_t now_ns = 0;
   Performance last;

@@ -156,6 +156,26 @@ TEST(WebMirror, TellsTheStateOnceAndWithEveryChange) {
   EXPECT_NE(always.hear("Your turn, I believe.").find("Your turn, I believe."), std::string::npos);
 }
 
+TEST(WebMirror, LetsBrowsersHearWhatIsSaid) {
+  const auto mirror = open_mirror();
+  Browser browser(*mirror);
+  browser.get("/speech.wav");
+  EXPECT_EQ(browser.answer().rfind("HTTP/1.1 404", 0), 0U);
+  const auto sound = std::make_shared<const Sound>(Sound{22050, {5, -6, 7}});
+  mirror->speech(sound);
+  mirror->speech(sound);  // frame after frame the same
+  browser.get("/state.json");
+  EXPECT_EQ(nlohmann::json::parse(body_of(browser.answer()))["speech"], 1);
+  browser.get("/speech.wav?1");
+  const std::string wav = body_of(browser.answer());
+  ASSERT_GE(wav.size(), 50U);
+  EXPECT_EQ(wav.substr(0, 4), "RIFF");
+  EXPECT_EQ(wav.substr(wav.size() - 6), std::string("\x05\0\xfa\xff\x07\0", 6));
+  mirror->speech(nullptr);
+  browser.get("/state.json");
+  EXPECT_EQ(nlohmann::json::parse(body_of(browser.answer()))["speech"], 0);
+}
+
 TEST(WebMirror, StreamsTheNewestPicture) {
   const auto mirror = open_mirror();
   Browser early(*mirror);
