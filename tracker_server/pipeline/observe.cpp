@@ -9,6 +9,7 @@
 
 #include "protocol/vocabulary/pose_eigen.hpp"
 #include "tracker_server/camera/camera_json.hpp"
+#include "tracker_server/edges/pyramid.hpp"
 #include "tracker_server/pipeline/debug_view.hpp"
 #include "tracker_server/pose/board_tracker.hpp"
 #include "tracker_server/pose/plane_pose.hpp"
@@ -222,7 +223,7 @@ Observation observe(const Frame& frame, ObserveContext& context) {
   const PieceReading reading = timed(result.step_ms, "pieces", [&] {
     std::vector<double> scan;
     if (state.options.method == ReadingMethod::scan_segments)
-      scan = scan_values(pyramid.levels[0], board.squares, to_pixel);
+      scan = scan_values(build_pyramid(frame.image_bgr, 1).levels[0], board.squares, to_pixel);
     return state.reader.read(view, frame.stamp, scan);
   });
   result.debug.readings = letters_of(reading.occupancy);
