@@ -10,7 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "game_controller/engine/endgame.hpp"
+#include "game_controller/engine/endgame_cache.hpp"
 #include "game_controller/engine/level.hpp"
 #include "game_controller/links/hub_engine.hpp"
 #include "game_controller/notation/fen.hpp"
@@ -65,12 +65,10 @@ int run_best(const Rules& rules, const std::string& fen, double move_time_s) {
   }
   auto start = Clock::now();
   Searcher searcher(rules, Evaluation::trained, std::size_t{64} << 20);
-  std::optional<EndgameTables> endgames;
-  constexpr int tables_soon_matter = 8;  // pieces
-  if (rules.id == RulesId::international && std::popcount(position->light | position->dark) <= tables_soon_matter) {
-    endgames = EndgameTables::load_or_generate();
-    searcher.use_endgames(&*endgames);
-  }
+  EndgameCache endgames(rules);
+  const Material material = material_of(*position);
+  if (material.pieces() <= EndgameTables::most_pieces) endgames.make(material);
+  searcher.use_endgames(&endgames.tables());
   SearchLimits limits;
   start = Clock::now();  // loading the tables is no thinking
   limits.give_up = [&] { return seconds_since(start) >= move_time_s; };
@@ -135,7 +133,8 @@ int main(int argc, char** argv) {
 
   LessonOptions lesson_options;
   CLI::App* lessons_command = app.add_subcommand("lessons", "Plays games with itself to learn from");
-  lessons_command->add_option("--out", lesson_options.out, "file of lessons; what it holds is gone on from")->required();
+  lessons_command->add_option("--out", lesson_options.out, "file of lessons; what it holds is gone on from")
+      ->required();
   lessons_command->add_option("--games", lesson_options.games, "in the file in the end")->capture_default_str();
   lessons_command->add_option("--weights", lesson_options.weights, "file, or plain; default: the built-in ones");
   lessons_command->add_option("--depth", lesson_options.depth, "plies that each move is thought about")
@@ -234,15 +233,13 @@ int main(int argc, char** argv) {
     if (dxp.listen.empty() == dxp.connect.empty()) {
       return complain({ErrorCode::invalid_argument, "dxp needs --listen PORT or --connect HOST:PORT"}, wrong_usage);
     }
-    const auto played = run_dxp(dxp, std::cout, std::cerr);
+    const auto played = run_dxp(dxp, std::cerr);
     return played ? 0 : complain(played.error(), failed);
   }
   if (hub_command->parsed()) {
-    std::optional<EndgameTables> endgames;
-    run_hub_engine(std::cin, std::cout, [&]() -> const EndgameTables* {
-      endgames = EndgameTables::load_or_generate();
-      return &*endgames;
-    });
+    EndgameCache endgames(international_rules);
+    endgames.make_in_background(EndgameTables::most_pieces);
+    run_hub_engine(std::cin, std::cout, &endgames.tables());
   }
   return 0;
 }

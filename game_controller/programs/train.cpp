@@ -4,7 +4,7 @@
 #include <memory>
 #include <ostream>
 
-#include "game_controller/engine/endgame.hpp"
+#include "game_controller/engine/endgame_cache.hpp"
 #include "game_controller/training/fit.hpp"
 #include "game_controller/training/lessons_file.hpp"
 #include "game_controller/training/self_play.hpp"
@@ -32,8 +32,9 @@ Result<void> play_lessons_to_file(const LessonOptions& options, std::ostream& lo
   const auto there = read_lessons(options.out);
   if (!there && there.error().code != ErrorCode::not_found) return tl::make_unexpected(there.error());
   play.first_game = there && !there->empty() ? there->back().game + 1 : 0;
-  const EndgameTables endgames = EndgameTables::load_or_generate();
-  play.endgames = &endgames;
+  EndgameCache endgames(international_rules);
+  endgames.make_all(EndgameTables::most_pieces, stop_requested);
+  play.endgames = &endgames.tables();
   play.depth = options.depth;
   play.seed = options.seed;
   while (play.first_game < options.games && !stop_requested()) {

@@ -22,8 +22,7 @@ static_assert(sizeof(Stored) == 40);
 
 Stored stored(const Lesson& lesson) {
   const Position& p = lesson.position;
-  return {p.light,      p.dark,      p.kings, lesson.result.value_or(-1.0F),
-          lesson.value, lesson.game, p.turn == Side::dark};
+  return {p.light, p.dark, p.kings, lesson.result.value_or(-1.0F), lesson.value, lesson.game, p.turn == Side::dark};
 }
 
 bool is_sound(const Stored& s) {
