@@ -11,39 +11,39 @@
 namespace counterpart {
 namespace {
 
-constexpr char mark[] = "counterpart endgame 2\n";  // before the bytes of a file; 1 was all tables in one file
+constexpr char table_mark[] = "counterpart endgame 2\n";  // before the bytes of a file; 1 was all tables in one file
 constexpr int lowest_priority = 19;
 
-std::string letters(const Material& m) {
+std::string letters_of(const Material& m) {
   return std::string(static_cast<std::size_t>(m.light_kings), 'K') +
          std::string(static_cast<std::size_t>(m.light_men), 'm') + "-" +
          std::string(static_cast<std::size_t>(m.dark_kings), 'K') +
          std::string(static_cast<std::size_t>(m.dark_men), 'm');
 }
 
-std::optional<EndgameBytes> read_file(const std::string& name) {
+std::optional<EndgameBytes> read_table_file(const std::string& name) {
   std::ifstream in(name, std::ios::binary | std::ios::ate);
   if (!in) return std::nullopt;
   const auto size = static_cast<std::size_t>(in.tellg());
-  constexpr std::size_t mark_size = sizeof mark - 1;
+  constexpr std::size_t table_mark_size = sizeof table_mark - 1;
   constexpr std::size_t largest = std::size_t{16} << 20;
-  if (size <= mark_size || size > largest) return std::nullopt;
-  std::string first(mark_size, '\0');
-  EndgameBytes bytes(size - mark_size);
+  if (size <= table_mark_size || size > largest) return std::nullopt;
+  std::string first(table_mark_size, '\0');
+  EndgameBytes bytes(size - table_mark_size);
   in.seekg(0);
-  in.read(first.data(), static_cast<std::streamsize>(mark_size));
+  in.read(first.data(), static_cast<std::streamsize>(table_mark_size));
   in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (!in || first != mark) return std::nullopt;
+  if (!in || first != table_mark) return std::nullopt;
   return bytes;
 }
 
 // Under another name first: two programs may do this at once.
-void write_file(const std::string& name, const EndgameBytes& bytes) {
+void write_table_file(const std::string& name, const EndgameBytes& bytes) {
   const std::string part = name + ".part" + std::to_string(::getpid());
   std::error_code ignored;
   {
     std::ofstream out(part, std::ios::binary | std::ios::trunc);
-    out << mark;
+    out << table_mark;
     out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     out.flush();
     if (!out) {
@@ -103,17 +103,17 @@ void EndgameCache::make_in_background(int most_pieces) {
 }
 
 std::string EndgameCache::file_of(const Material& m) const {
-  return (std::filesystem::path(folder_) / (std::string(tables_.rules().name) + "_" + letters(m))).string();
+  return (std::filesystem::path(folder_) / (std::string(tables_.rules().name) + "_" + letters_of(m))).string();
 }
 
 void EndgameCache::read(const Material& m) {
-  if (auto bytes = read_file(file_of(m))) static_cast<void>(tables_.add(m, std::move(*bytes)));
+  if (auto bytes = read_table_file(file_of(m))) static_cast<void>(tables_.add(m, std::move(*bytes)));
 }
 
 void EndgameCache::keep(const Material& m) const {
   const EndgameBytes* bytes = tables_.bytes(m);
   std::error_code ignored;
-  if (bytes != nullptr && !std::filesystem::exists(file_of(m), ignored)) write_file(file_of(m), *bytes);
+  if (bytes != nullptr && !std::filesystem::exists(file_of(m), ignored)) write_table_file(file_of(m), *bytes);
 }
 
 }  // namespace counterpart

@@ -16,7 +16,7 @@ constexpr int highest_value = 255;
 constexpr std::uint8_t no_quiet_moves = 255;  // captures, which lead elsewhere; or no position at all
 constexpr std::uint8_t cannot_lose = 254;     // a move that leads elsewhere draws or wins
 
-struct GivenUp {};
+struct CutShort {};
 
 struct Half {  // one of the two tables in work
   Material material;
@@ -61,7 +61,7 @@ class Solver {
   std::uint32_t opposite(std::uint32_t side) const { return sides_.size() > 1 ? 1 - side : 0; }
 
   void look_at_clock() {
-    if (++steps_ % 4096 == 0 && give_up_ && give_up_()) throw GivenUp{};
+    if (++steps_ % 4096 == 0 && give_up_ && give_up_()) throw CutShort{};
   }
 
   void find(Entry entry, int value) {
@@ -112,7 +112,7 @@ class Solver {
     const Position q = index_.with_light_to_move(position);
     if (q.light == 0) return 1;
     const auto value = known_.find(q);
-    if (!value) throw GivenUp{};
+    if (!value) throw CutShort{};
     return value->outcome == 0 ? 0 : value->plies + 1;
   }
 
@@ -177,7 +177,7 @@ std::optional<SolvedEndgame> solve_endgame(const EndgameTables& known, const End
                                            const Material& material, const std::function<bool()>& give_up) {
   try {
     return Solver(known, index, material, give_up).solve();
-  } catch (const GivenUp&) {
+  } catch (const CutShort&) {
     return std::nullopt;
   }
 }

@@ -12,7 +12,7 @@ namespace counterpart {
 namespace {
 
 // A pipe that says it takes anything takes this much without blocking (POSIX: PIPE_BUF is at least 512).
-constexpr std::size_t block = 512;
+constexpr std::size_t taken_at_once = 512;
 
 }  // namespace
 
@@ -45,7 +45,7 @@ bool LineOutput::takes_more(int timeout_ms) const {
 
 // False when the reader is gone.
 bool LineOutput::write_some() {
-  const std::string_view rest = std::string_view(lines_.front()).substr(written_, block);
+  const std::string_view rest = std::string_view(lines_.front()).substr(written_, taken_at_once);
   const auto n = ::write(descriptor_, rest.data(), rest.size());
   if (n < 0) return errno == EINTR || errno == EAGAIN;
   written_ += static_cast<std::size_t>(n);
