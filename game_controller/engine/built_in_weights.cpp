@@ -17,7 +17,7 @@ extern "C" const counterpart::PatternWeights counterpart_trained_weights;
 namespace counterpart {
 
 static_assert(sizeof(PatternWeights) == COUNTERPART_TRAINED_WEIGHTS_BYTES,
-              "trained.weights has the wrong size; make it again with: draughts train");
+              "trained.weights has the wrong size; make it again with: draughts fit");
 static_assert(std::endian::native == std::endian::little, "the file is little-endian");
 
 const PatternWeights& built_in_weights() {

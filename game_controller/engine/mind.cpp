@@ -1,6 +1,8 @@
 #include "game_controller/engine/mind.hpp"
 
+#include "game_controller/engine/endgame_cache.hpp"
 #include "game_controller/engine/level.hpp"
+#include "game_controller/links/dxp_partner.hpp"
 #include "game_controller/links/hub_client.hpp"
 #include "game_controller/notation/fen.hpp"
 #include "game_controller/notation/move_text.hpp"
@@ -11,6 +13,8 @@ namespace {
 
 constexpr std::size_t own_mind_table_bytes = std::size_t{32} << 20;
 constexpr std::size_t lockstep_table_bytes = std::size_t{4} << 20;  // cleared before each move, so small
+
+constexpr std::uint64_t pondering_nodes = 5'000'000;  // some seconds: the machine has other things to do, too
 
 Result<Position> playable(const Rules& rules, const std::string& fen) {
   const auto position = read_fen(rules, fen);
@@ -34,6 +38,13 @@ OpponentMove told(const Rules& rules, const Position& position, const Move& move
   return answer;
 }
 
+OpponentMove resignation(const std::string& why) {
+  OpponentMove resigns;
+  resigns.move = opponent_resigns;
+  resigns.note = why;
+  return resigns;
+}
+
 class OwnMind final : public Mind {
  public:
   OwnMind(const Rules& rules, const OpponentOptions& options)
@@ -41,21 +52,41 @@ class OwnMind final : public Mind {
         plan_(plan_of_level(options.level)),
         seed_(options.seed),
         lockstep_(options.lockstep),
-        searcher_(rules, plan_.evaluation, options.lockstep ? lockstep_table_bytes : own_mind_table_bytes) {}
+        searcher_(rules, plan_.evaluation, options.lockstep ? lockstep_table_bytes : own_mind_table_bytes) {
+    if (lockstep_ || plan_.evaluation != Evaluation::trained) return;
+    endgames_ = std::make_unique<EndgameCache>(rules);
+    endgames_->make_in_background(EndgameTables::most_pieces);
+    searcher_.use_endgames(&endgames_->tables());
+  }
 
   Result<OpponentMove> answer(const std::string& fen, const std::function<bool()>& give_up) override {
     const auto position = playable(rules_, fen);
     if (!position) return tl::make_unexpected(position.error());
     if (lockstep_) searcher_.clear();  // the answer depends on nothing but its arguments
     const Choice choice = choose(searcher_, rules_, *position, {}, plan_, seed_, give_up);
+    expected_.reset();
+    if (choice.line.size() > 1) {
+      expected_ = after(rules_, after(rules_, *position, choice.line[0]), choice.line[1]);
+    }
     return told(rules_, *position, choice.best.move, choice.best.value / static_cast<double>(man_value), choice.line);
+  }
+
+  // Only the strongest level: what is thought here makes the next answer better than its level. The table remembers it.
+  void ponder(const std::function<bool()>& give_up) override {
+    if (!expected_ || plan_.nodes != plan_of_level(highest_level).nodes || !has_move(rules_, *expected_)) return;
+    SearchLimits limits;
+    limits.nodes = pondering_nodes;
+    limits.give_up = give_up;
+    static_cast<void>(searcher_.search(*expected_, {}, limits));
   }
 
  private:
   const Rules& rules_;
+  std::optional<Position> expected_;  // when we shall be asked again
   LevelPlan plan_;
   std::uint64_t seed_;
   bool lockstep_;
+  std::unique_ptr<EndgameCache> endgames_;  // none in lockstep: what is there depends on the clock
   Searcher searcher_;
 };
 
@@ -71,10 +102,7 @@ class HubMind final : public Mind {
     const auto found = client_.ask(*position, move_time_s_, give_up);
     if (found) return told(rules_, *position, found->move, found->score, found->line);
     if (found.error().code == ErrorCode::refused) return tl::make_unexpected(found.error());
-    OpponentMove resigns;
-    resigns.move = opponent_resigns;
-    resigns.note = found.error().message;
-    return resigns;
+    return resignation(found.error().message);
   }
 
  private:
@@ -83,17 +111,49 @@ class HubMind final : public Mind {
   double move_time_s_;
 };
 
+// One that is gone, silent or plays against the rules has lost, too.
+class DxpMind final : public Mind {
+ public:
+  DxpMind(const Rules& rules, DxpPartner partner) : rules_(rules), partner_(std::move(partner)) {}
+
+  Result<OpponentMove> answer(const std::string& fen, const std::function<bool()>& give_up) override {
+    const auto position = playable(rules_, fen);
+    if (!position) return tl::make_unexpected(position.error());
+    const auto found = partner_.ask(*position, give_up);
+    if (found) return told(rules_, *position, *found, 0, {*found});
+    if (found.error().code == ErrorCode::refused) return tl::make_unexpected(found.error());
+    return resignation(found.error().message);
+  }
+
+ private:
+  const Rules& rules_;
+  DxpPartner partner_;
+};
+
+bool begins_with(const std::string& text, const std::string& beginning) {
+  return text.rfind(beginning, 0) == 0;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Mind>> make_mind(const Rules& rules, const OpponentOptions& options) {
   if (options.mind.empty()) return std::make_unique<OwnMind>(rules, options);
-  if (options.mind.rfind("hub:", 0) != 0) {
-    return failure(ErrorCode::invalid_argument, "\"" + options.mind + "\" names no opponent; use hub:COMMAND.");
+  const bool by_hub = begins_with(options.mind, "hub:");
+  const bool by_dxp = begins_with(options.mind, "dxp:");
+  if (!by_hub && !by_dxp) {
+    return failure(ErrorCode::invalid_argument,
+                   "\"" + options.mind + "\" names no opponent; use hub:COMMAND or dxp:HOST:PORT.");
   }
   if (rules.id != RulesId::international) {
-    return failure(ErrorCode::unsupported, "Hub engines play international rules only.");
+    return failure(ErrorCode::unsupported, "Hub engines and DXP players know international rules only.");
   }
-  auto client = HubClient::start(options.mind.substr(4));
+  const std::string where = options.mind.substr(4);
+  if (by_dxp) {
+    auto partner = DxpPartner::connect(where);
+    if (!partner) return tl::make_unexpected(partner.error());
+    return std::make_unique<DxpMind>(rules, std::move(*partner));
+  }
+  auto client = HubClient::start(where);
   if (!client) return tl::make_unexpected(client.error());
   return std::make_unique<HubMind>(rules, std::move(*client), options.move_time_s);
 }

@@ -15,6 +15,8 @@ class Mind {
   virtual ~Mind() = default;
   // Blocks until there is an answer or `give_up` says so.
   virtual Result<OpponentMove> answer(const std::string& fen, const std::function<bool()>& give_up) = 0;
+  // Uses the other side's time to think on after an answer, until `give_up` says so or there is enough.
+  virtual void ponder(const std::function<bool()>& give_up) { static_cast<void>(give_up); }
 };
 
 // As `options.mind` says; see OpponentOptions.

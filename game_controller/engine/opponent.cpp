@@ -75,7 +75,11 @@ class ThreadedOpponent final : public Opponent {
       lock.unlock();
       auto answer = mind_->answer(fen, [this] { return stop_.load(); });
       lock.lock();
-      if (mine == wanted_) answer_ = std::move(answer);  // otherwise it was asked something newer meanwhile
+      if (mine != wanted_) continue;  // it was asked something newer meanwhile
+      answer_ = std::move(answer);
+      lock.unlock();
+      mind_->ponder([this] { return stop_.load(); });
+      lock.lock();
     }
   }
 

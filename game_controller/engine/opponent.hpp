@@ -16,11 +16,14 @@ struct OpponentOptions {
   int level = 4;           // 1..8
   bool lockstep = false;   // searches by nodes inside `poll`, reads no clock: two runs give the same moves
   std::uint64_t seed = 1;  // of the choice among near-equal moves
-  std::string mind;  // empty: this program's engine; "hub:COMMAND": any Hub 2 engine, started by that command line
+  // Empty: this program's engine; "hub:COMMAND": any Hub 2 engine, started by that command line; "dxp:HOST:PORT": a
+  // program or person that listens there.
+  std::string mind;
   double move_time_s = 1;  // that a Hub engine has for a move
 };
 
-// Said as a move: the game is given up. A Hub engine that dies, keeps silent or names an illegal move does so.
+// Said as a move: the game is given up. An engine or distant player that dies, keeps silent or makes an illegal move
+// does so.
 inline constexpr const char* opponent_resigns = "resigns";
 
 struct OpponentMove {

@@ -10,6 +10,7 @@
 #include "game_controller/engine/endgame.hpp"
 #include "game_controller/engine/transposition.hpp"
 #include "game_controller/rules/generate.hpp"
+#include "game_controller/rules/record.hpp"
 
 namespace counterpart {
 namespace {
@@ -20,6 +21,12 @@ constexpr int surely_won = win_value - 2 * max_ply;
 // How far the resting search follows threats without captures. One ply beats two 59 to 41 and six 76 to 24 at equal
 // nodes (4,000 a move): the nodes are better spent on depth.
 constexpr int max_quiet_plies_in_threats = 1;
+
+// A shallow search that beats beta by a margin foretells that the whole one beats beta (ProbCut, M. Buro 1995). 57 to
+// 43 at equal nodes (30,000 a move).
+constexpr int least_depth_to_foretell = 5;
+constexpr int foretelling_reduction = 3;
+constexpr int foretelling_margin = 30;
 
 struct GivenUp {};  // thrown through the recursion when a limit is reached
 
@@ -95,6 +102,8 @@ struct Searcher::State {
     if (endgames == nullptr || std::popcount(p.light | p.dark) > EndgameTables::most_pieces) return std::nullopt;
     const auto value = endgames->find(p);
     if (!value) return std::nullopt;
+    const int chase_moves = lone_king_limit(*rules, p);
+    if (chase_moves > 0 && value->plies > 2 * chase_moves) return 0;
     return value->outcome * (win_value - ply - value->plies);
   }
 
@@ -120,6 +129,7 @@ struct Searcher::State {
       }
       generate_quiet(*rules, p, moves);
       if (moves.empty()) return -win_value + ply;
+      order(moves, nullptr, ply);
       ++quiet_plies;
       // He who is threatened may also let it happen; his best move is searched, never less than that.
     }
@@ -179,6 +189,13 @@ struct Searcher::State {
     return index < 4 ? 1 : std::max(2, depth / 3);
   }
 
+  bool is_foretold_above(const Position& p, int depth, int beta, int ply) {
+    if (depth < least_depth_to_foretell || std::abs(beta) > surely_won) return false;
+    const int bound = beta + foretelling_margin;
+    Line unused;
+    return search(p, depth - foretelling_reduction, bound - 1, bound, ply, unused) >= bound;
+  }
+
   int search(const Position& p, int depth, int alpha, int beta, int ply, Line& line) {
     line.length = 0;
     if (depth <= 0) return rest(p, alpha, beta, ply, 0);
@@ -205,6 +222,8 @@ struct Searcher::State {
       }
     }
 
+    if (!in_line && is_foretold_above(p, depth, beta, ply)) return beta;
+
     MoveList moves;
     generate(*rules, p, moves);
     if (moves.empty()) return -win_value + ply;
@@ -224,6 +243,7 @@ struct Searcher::State {
     for (int i = 0; i < moves.size(); ++i) {
       const Move& move = moves[i];
       const Position q = after(*rules, p, move);
+      table.prefetch(key_of(q));
       int value = 0;
       if (i == 0) {
         value = -search(q, next_depth, -beta, -alpha, ply + 1, rest_line);
@@ -297,7 +317,7 @@ Searcher::~Searcher() = default;
 Searcher::Searcher(Searcher&&) noexcept = default;
 
 void Searcher::use_endgames(const EndgameTables* tables) {
-  state_->endgames = state_->rules->id == RulesId::international ? tables : nullptr;
+  state_->endgames = tables != nullptr && tables->rules().id == state_->rules->id ? tables : nullptr;
 }
 
 void Searcher::clear() {

@@ -42,7 +42,7 @@ class Searcher {
   ~Searcher();
   Searcher(Searcher&&) noexcept;
 
-  // International rules only. The tables must outlive this; nullptr: none.
+  // Of the same rules. The tables must outlive this and may grow meanwhile; nullptr: none.
   void use_endgames(const EndgameTables* tables);
 
   // Forgets everything learnt: a new game.

@@ -13,20 +13,18 @@ std::uint32_t check_of(std::uint64_t key) {
 }  // namespace
 
 TranspositionTable::TranspositionTable(std::size_t bytes) {
-  const std::size_t buckets = std::bit_floor(std::max<std::size_t>(bytes / (slots * sizeof(Known)), 1));
-  entries_.resize(buckets * slots);
-  mask_ = buckets - 1;
+  buckets_.resize(std::bit_floor(std::max<std::size_t>(bytes / sizeof(Bucket), 1)));
+  mask_ = buckets_.size() - 1;
 }
 
 void TranspositionTable::clear() {
-  std::fill(entries_.begin(), entries_.end(), Known{});
+  std::fill(buckets_.begin(), buckets_.end(), Bucket{});
   age_ = 0;
 }
 
 const Known* TranspositionTable::find(std::uint64_t key) const {
-  const Known* slot = &entries_[bucket_of(key)];
-  for (std::size_t i = 0; i < slots; ++i) {
-    if (slot[i].bound != Bound::none && slot[i].check == check_of(key)) return slot + i;
+  for (const Known& known : buckets_[key & mask_].known) {
+    if (known.bound != Bound::none && known.check == check_of(key)) return &known;
   }
   return nullptr;
 }
@@ -34,18 +32,18 @@ const Known* TranspositionTable::find(std::uint64_t key) const {
 void TranspositionTable::keep(std::uint64_t key, Known known) {
   known.check = check_of(key);
   known.age = age_;
-  Known* slot = &entries_[bucket_of(key)];
-  Known* chosen = slot;
+  Known* chosen = nullptr;
   int least = 1 << 20;
-  for (std::size_t i = 0; i < slots; ++i) {
-    if (slot[i].bound == Bound::none || slot[i].check == known.check) {
-      chosen = slot + i;
+  for (Known& old : buckets_[key & mask_].known) {
+    if (old.bound == Bound::none || old.check == known.check) {
+      if (old.bound != Bound::none && old.age == age_ && old.depth > known.depth) return;
+      chosen = &old;
       break;
     }
-    const int worth = slot[i].depth - 8 * static_cast<std::uint8_t>(age_ - slot[i].age);
+    const int worth = old.depth - 8 * static_cast<std::uint8_t>(age_ - old.age);
     if (worth < least) {
       least = worth;
-      chosen = slot + i;
+      chosen = &old;
     }
   }
   *chosen = known;

@@ -26,7 +26,9 @@ Result<DxpMessage> receive(Channel& channel, double timeout_s, const std::functi
   return read_dxp(*text);
 }
 
-std::optional<Move> legal_move(const Position& position, const DxpMove& told) {
+}  // namespace
+
+std::optional<Move> legal_dxp_move(const Position& position, const DxpMove& told) {
   if (told.from < 1 || told.from > 50 || told.to < 1 || told.to > 50) return std::nullopt;
   Bits captured = 0;
   for (const int square : told.captured) {
@@ -42,6 +44,14 @@ std::optional<Move> legal_move(const Position& position, const DxpMove& told) {
   }
   return std::nullopt;
 }
+
+DxpMove dxp_move(const Move& move, int seconds) {
+  return {seconds, square_of_bit(move.from, international_rules.squares),
+          square_of_bit(move.to, international_rules.squares),
+          squares_of_bits(move.captured, international_rules.squares)};
+}
+
+namespace {
 
 GameResult win_of(Side side) {
   return side == Side::light ? GameResult::light_wins : GameResult::dark_wins;
@@ -79,12 +89,8 @@ class DxpGame {
     const auto start = Clock::now();
     const Move move = player_.choose(game_.record, minutes_, moves_);
     if (player_.give_up && player_.give_up()) return finish(GameResult::open, "stopped", true);
-    DxpMove told;
-    told.seconds = static_cast<int>(std::chrono::duration<double>(Clock::now() - start).count());
-    told.from = square_of_bit(move.from, international_rules.squares);
-    told.to = square_of_bit(move.to, international_rules.squares);
-    told.captured = squares_of_bits(move.captured, international_rules.squares);
-    if (!send(channel_, told)) return finish(win_of(game_.our_side), "closed", true);
+    const auto seconds = static_cast<int>(std::chrono::duration<double>(Clock::now() - start).count());
+    if (!send(channel_, dxp_move(move, seconds))) return finish(win_of(game_.our_side), "closed", true);
     play(move);
   }
 
@@ -92,7 +98,7 @@ class DxpGame {
     const auto message = receive(channel_, player_.patience_s, player_.give_up);
     if (!message) return lost_contact(message.error());
     if (const auto* move = std::get_if<DxpMove>(&*message)) {
-      const auto legal = legal_move(game_.record.position(), *move);
+      const auto legal = legal_dxp_move(game_.record.position(), *move);
       if (!legal) return say_end(win_of(game_.our_side), "illegal_move", 3);
       play(*legal);
     } else if (const auto* end = std::get_if<DxpGameEnd>(&*message)) {

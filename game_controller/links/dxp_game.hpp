@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "game_controller/links/channel.hpp"
@@ -18,6 +19,11 @@ struct DxpResult {
   std::string why;    // "no_moves", "repetition" ... , "resigned", "agreed", "illegal_move", "timeout", "closed"
   bool stop = false;  // the other side wants no further game, or is gone
 };
+
+// The legal move that a message tells; empty if there is none.
+std::optional<Move> legal_dxp_move(const Position& position, const DxpMove& told);
+
+DxpMove dxp_move(const Move& move, int seconds);
 
 // What a game needs from us.
 struct DxpPlayer {

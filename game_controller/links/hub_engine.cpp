@@ -5,7 +5,6 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
-#include <functional>
 #include <istream>
 #include <memory>
 #include <mutex>
@@ -44,8 +43,8 @@ struct Level {
 
 class HubEngine {
  public:
-  HubEngine(std::istream& in, std::ostream& out, const std::function<const EndgameTables*()>& endgames)
-      : in_(in), out_(out), ask_for_endgames_(endgames), record_(rules_, start_position(rules_)) {}
+  HubEngine(std::istream& in, std::ostream& out, const EndgameTables* endgames)
+      : in_(in), out_(out), endgames_(endgames), record_(rules_, start_position(rules_)) {}
   ~HubEngine() { stop_search(); }
 
   void run() {
@@ -85,8 +84,7 @@ class HubEngine {
     } else if (command == "set-param") {
       set_parameter(line);
     } else if (command == "init") {
-      if (endgames_ == nullptr && ask_for_endgames_) endgames_ = ask_for_endgames_();
-      searcher().use_endgames(endgames_);
+      searcher();
       put("ready");
     } else if (command == "new-game") {
       searcher().clear();
@@ -279,8 +277,7 @@ class HubEngine {
 
   std::istream& in_;
   std::ostream& out_;
-  const std::function<const EndgameTables*()>& ask_for_endgames_;
-  const EndgameTables* endgames_ = nullptr;
+  const EndgameTables* endgames_;
   const Rules& rules_ = international_rules;
   int level_of_play_ = 0;  // 0: full strength within the limits of `level`
   Evaluation evaluation_ = Evaluation::trained;
@@ -302,7 +299,7 @@ class HubEngine {
 
 }  // namespace
 
-void run_hub_engine(std::istream& in, std::ostream& out, const std::function<const EndgameTables*()>& endgames) {
+void run_hub_engine(std::istream& in, std::ostream& out, const EndgameTables* endgames) {
   HubEngine(in, out, endgames).run();
 }
 

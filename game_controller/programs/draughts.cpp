@@ -10,7 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "game_controller/engine/endgame.hpp"
+#include "game_controller/engine/endgame_cache.hpp"
 #include "game_controller/engine/level.hpp"
 #include "game_controller/links/hub_engine.hpp"
 #include "game_controller/notation/fen.hpp"
@@ -65,12 +65,10 @@ int run_best(const Rules& rules, const std::string& fen, double move_time_s) {
   }
   auto start = Clock::now();
   Searcher searcher(rules, Evaluation::trained, std::size_t{64} << 20);
-  std::optional<EndgameTables> endgames;
-  constexpr int tables_soon_matter = 8;  // pieces
-  if (rules.id == RulesId::international && std::popcount(position->light | position->dark) <= tables_soon_matter) {
-    endgames = EndgameTables::load_or_generate();
-    searcher.use_endgames(&*endgames);
-  }
+  EndgameCache endgames(rules);
+  const Material material = material_of(*position);
+  if (material.pieces() <= EndgameTables::most_pieces) endgames.make(material);
+  searcher.use_endgames(&endgames.tables());
   SearchLimits limits;
   start = Clock::now();  // loading the tables is no thinking
   limits.give_up = [&] { return seconds_since(start) >= move_time_s; };
@@ -133,15 +131,26 @@ int main(int argc, char** argv) {
 
   CLI::App* hub_command = app.add_subcommand("hub", "Is a Hub 2 engine on standard input and output");
 
-  TrainOptions training;
-  CLI::App* train_command = app.add_subcommand("train", "Learns the weights of the evaluation from games with itself");
-  train_command->add_option("--out", training.out, "file for the weights")->required();
-  train_command->add_option("--start", training.start, "weights to go on from");
-  train_command->add_option("--games", training.games, "of each round")->capture_default_str();
-  train_command->add_option("--depth", training.depth, "plies that each move is thought about")->capture_default_str();
-  train_command->add_option("--epochs", training.epochs, "times that all positions are gone through")
+  LessonOptions lesson_options;
+  CLI::App* lessons_command = app.add_subcommand("lessons", "Plays games with itself to learn from");
+  lessons_command->add_option("--out", lesson_options.out, "file of lessons; what it holds is gone on from")
+      ->required();
+  lessons_command->add_option("--games", lesson_options.games, "in the file in the end")->capture_default_str();
+  lessons_command->add_option("--weights", lesson_options.weights, "file, or plain; default: the built-in ones");
+  lessons_command->add_option("--depth", lesson_options.depth, "plies that each move is thought about")
+      ->check(CLI::Range(2, 20))
       ->capture_default_str();
-  train_command->add_option("--seed", training.seed, "of the games")->capture_default_str();
+  lessons_command->add_option("--seed", lesson_options.seed, "of the games")->capture_default_str();
+
+  FitFilesOptions fitting;
+  CLI::App* fit_command = app.add_subcommand("fit", "Learns the weights of the evaluation from lessons");
+  fit_command->add_option("lessons", fitting.lessons, "files that \"draughts lessons\" wrote")->required();
+  fit_command->add_option("--out", fitting.out, "file for the weights")->required();
+  fit_command->add_option("--start", fitting.start, "weights to go on from");
+  fit_command->add_option("--epochs", fitting.epochs, "times that all lessons are gone through")->capture_default_str();
+  fit_command->add_option("--trust", fitting.trust_in_search, "share of the search in what is learnt")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
 
   std::string file;
   double most_leaves = 1e12;
@@ -200,9 +209,13 @@ int main(int argc, char** argv) {
     const auto played = play_in_terminal(rules, play, std::cin, std::cout);
     return played ? 0 : complain(played.error(), failed);
   }
-  if (train_command->parsed()) {
-    const auto trained = train(training, std::cerr);
-    return trained ? 0 : complain(trained.error(), failed);
+  if (lessons_command->parsed()) {
+    const auto played = play_lessons_to_file(lesson_options, std::cerr);
+    return played ? 0 : complain(played.error(), failed);
+  }
+  if (fit_command->parsed()) {
+    const auto fitted = fit_files(fitting, std::cerr);
+    return fitted ? 0 : complain(fitted.error(), failed);
   }
   if (check_command->parsed()) {
     const auto right = check_positions(rules, file, most_leaves, std::cout);
@@ -220,15 +233,13 @@ int main(int argc, char** argv) {
     if (dxp.listen.empty() == dxp.connect.empty()) {
       return complain({ErrorCode::invalid_argument, "dxp needs --listen PORT or --connect HOST:PORT"}, wrong_usage);
     }
-    const auto played = run_dxp(dxp, std::cout, std::cerr);
+    const auto played = run_dxp(dxp, std::cerr);
     return played ? 0 : complain(played.error(), failed);
   }
   if (hub_command->parsed()) {
-    std::optional<EndgameTables> endgames;
-    run_hub_engine(std::cin, std::cout, [&]() -> const EndgameTables* {
-      endgames = EndgameTables::load_or_generate();
-      return &*endgames;
-    });
+    EndgameCache endgames(international_rules);
+    endgames.make_in_background(EndgameTables::most_pieces);
+    run_hub_engine(std::cin, std::cout, &endgames.tables());
   }
   return 0;
 }

@@ -11,9 +11,10 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include "game_controller/engine/endgame.hpp"
+#include "game_controller/engine/endgame_cache.hpp"
 #include "game_controller/engine/level.hpp"
 #include "game_controller/links/dxp_game.hpp"
+#include "game_controller/links/line_output.hpp"
 #include "game_controller/notation/fen.hpp"
 #include "game_controller/notation/pdn_write.hpp"
 #include "game_controller/rules/generate.hpp"
@@ -26,6 +27,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double connect_patience_s = 10;
+constexpr double patience_with_reader_s = 1;
 constexpr int moves_still_to_come = 40;  // when the clock is for the whole game
 
 // What is typed, or written by the program that started us: "time 100", "quit".
@@ -70,9 +72,8 @@ class Instructions {
 
 class DxpProgram {
  public:
-  DxpProgram(const DxpOptions& options, std::ostream& out, std::ostream& log)
+  DxpProgram(const DxpOptions& options, std::ostream& log)
       : options_(options),
-        out_(out),
         log_(log),
         instructions_(options.move_time_s),
         plan_(options.level > 0 ? plan_of_level(options.level) : LevelPlan{Evaluation::trained, 60, 0, 0}),
@@ -85,8 +86,8 @@ class DxpProgram {
     player_.give_up = [this] { return instructions_.quit(); };
     player_.patience_s = options.patience_s;
     if (options.level == 0) {
-      endgames_ = EndgameTables::load_or_generate();
-      searcher_.use_endgames(&*endgames_);
+      endgames_.make_in_background(EndgameTables::most_pieces);
+      searcher_.use_endgames(&endgames_.tables());
     }
   }
 
@@ -132,6 +133,10 @@ class DxpProgram {
       if (game->stop) break;
     } while (played_ < std::max(options_.games, 1));
     return {};
+  }
+
+  void finish() {
+    if (!results_.finish(patience_with_reader_s)) log_ << "DXP: nobody reads the results" << std::endl;
   }
 
  private:
@@ -198,15 +203,15 @@ class DxpProgram {
     line["result"] = pdn_result(game.result);
     line["why"] = game.why;
     line["plies"] = game.record.moves().size();
-    out_ << line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) << std::endl;
+    results_.put(line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   }
 
   DxpOptions options_;
-  std::ostream& out_;
+  LineOutput results_{STDOUT_FILENO};
   std::ostream& log_;
   Instructions instructions_;
   LevelPlan plan_;
-  std::optional<EndgameTables> endgames_;
+  EndgameCache endgames_{international_rules};
   Searcher searcher_;
   DxpPlayer player_;
   int played_ = 0;
@@ -216,10 +221,12 @@ class DxpProgram {
 
 }  // namespace
 
-Result<void> run_dxp(const DxpOptions& options, std::ostream& out, std::ostream& log) {
+Result<void> run_dxp(const DxpOptions& options, std::ostream& log) {
   catch_stop_signals();
-  DxpProgram program(options, out, log);
-  return options.listen.empty() ? program.visit() : program.serve();
+  DxpProgram program(options, log);
+  auto played = options.listen.empty() ? program.visit() : program.serve();
+  program.finish();
+  return played;
 }
 
 }  // namespace counterpart

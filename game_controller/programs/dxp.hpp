@@ -22,8 +22,8 @@ struct DxpOptions {
   std::string pdn_file;     // every game is saved there as it goes; empty: not saved
 };
 
-// A JSON line a game on `out`, everything else to `log`. Standard input is read for "time MILLISECONDS" (a move) and
-// "quit".
-[[nodiscard]] Result<void> run_dxp(const DxpOptions& options, std::ostream& out, std::ostream& log);
+// A JSON line a game on standard output (the games go on if nobody reads it), everything else to `log`. Standard input
+// is read for "time MILLISECONDS" (a move) and "quit".
+[[nodiscard]] Result<void> run_dxp(const DxpOptions& options, std::ostream& log);
 
 }  // namespace counterpart

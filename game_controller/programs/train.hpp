@@ -1,4 +1,4 @@
-// Learns the weights of the trained evaluation.
+// Learns the weights of the trained evaluation: games of the engine with itself, and what follows from them.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +10,25 @@
 
 namespace counterpart {
 
-struct TrainOptions {
-  std::string start;  // weights to go on from; empty: none, the first round is played with the plain evaluation
-  std::string out;    // file for the weights; written after each round
-  std::vector<int> games{6000, 8000};  // of each round; each is played with the weights learnt before it
-  int depth = 4;
-  int epochs = 4;
+struct LessonOptions {
+  std::string out;      // file of lessons; what it holds already is not played again
+  std::string weights;  // that the games are played with; "plain": without any; empty: the built-in ones
+  int games = 10'000;   // in the file in the end
+  int depth = 4;        // plies that each move is thought about
   std::uint64_t seed = 1;
 };
 
-// Progress goes to `log`. The same options give the same file.
-[[nodiscard]] Result<void> train(const TrainOptions& options, std::ostream& log);
+// Progress goes to `log`. The same options give the same file, in one run or in several.
+[[nodiscard]] Result<void> play_lessons_to_file(const LessonOptions& options, std::ostream& log);
+
+struct FitFilesOptions {
+  std::vector<std::string> lessons;  // files
+  std::string out;                   // file for the weights
+  std::string start;                 // weights to go on from; empty: none
+  int epochs = 4;
+  double trust_in_search = 0.75;
+};
+
+[[nodiscard]] Result<void> fit_files(const FitFilesOptions& options, std::ostream& log);
 
 }  // namespace counterpart

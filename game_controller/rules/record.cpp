@@ -6,9 +6,7 @@
 #include "game_controller/rules/generate.hpp"
 
 namespace counterpart {
-namespace {
 
-// Moves each that a lone king may still be chased, 0 if neither side is one.
 int lone_king_limit(const Rules& rules, const Position& position) {
   for (const Side side : {Side::light, Side::dark}) {
     const Bits weak = pieces_of(position, side);
@@ -21,8 +19,6 @@ int lone_king_limit(const Rules& rules, const Position& position) {
   }
   return 0;
 }
-
-}  // namespace
 
 Record::Record(const Rules& rules, const Position& start) : rules_(&rules) {
   steps_.push_back({start, key_of(start), 0, lone_king_limit(rules, start), 0});

@@ -16,6 +16,10 @@ struct Ending {
   const char* code = "";  // "no_moves", "repetition", "kings_only", "lone_king"
 };
 
+// Moves that each side still has from when such a material came about, 0 if neither side is a lone king (FMJD Annex 1
+// art. 6.3 and 6.4).
+int lone_king_limit(const Rules& rules, const Position& position);
+
 class Record {
  public:
   Record(const Rules& rules, const Position& start);

@@ -60,7 +60,8 @@ class Regression {
 
   float target(const Lesson& lesson) const {
     const auto trust = static_cast<float>(options_.trust_in_search);
-    return (1 - trust) * lesson.result + trust * sigmoid(logits_a_man * lesson.value);
+    const float thought = sigmoid(logits_a_man * lesson.value);
+    return lesson.result ? (1 - trust) * *lesson.result + trust * thought : thought;
   }
 
   float predict(const PatternView& view) const {

@@ -111,6 +111,13 @@ void add_serve(CLI::App& app, int& exit_code) {
   command->add_option("--level", serve.opponent.level, "1 (a beginner beats it) to 8")
       ->check(CLI::Range(1, 8))
       ->capture_default_str();
+  command->add_option(
+      "--opponent", serve.opponent.mind,
+      "who finds the virtual player's moves: hub:COMMAND (any Hub 2 engine) or dxp:HOST:PORT (a distant "
+      "program or person); default: the built-in engine");
+  command->add_option("--opponent-time", serve.opponent.move_time_s, "seconds a move of a Hub engine")
+      ->check(CLI::Range(0.01, 3'600.0))
+      ->capture_default_str();
   command->add_option("--seed", serve.opponent.seed, "of the choice among near-equal moves")->capture_default_str();
   command->add_option("--activity", arguments->activity, "game, or show: a short performance for a film")
       ->check(CLI::IsMember({"game", "show"}))

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "game_controller/engine/opponent.hpp"
 #include "game_controller/links/dxp_game.hpp"
 #include "game_controller/links/dxp_message.hpp"
+#include "game_controller/links/dxp_partner.hpp"
 #include "game_controller/notation/fen.hpp"
+#include "game_controller/notation/move_text.hpp"
 #include "game_controller/rules/generate.hpp"
 
 namespace counterpart {
@@ -160,6 +163,60 @@ TEST(DxpGame, resigning_is_understood_and_answered) {
   EXPECT_EQ(game.result, GameResult::dark_wins);
   EXPECT_EQ(game.why, "resigned");
   EXPECT_EQ(answer, "E00");
+}
+
+// Answers requests and plays at random until the other side is gone, like a program that waits for opponents.
+class WaitingPlayer {
+ public:
+  WaitingPlayer() : listener_(Listener::open("127.0.0.1:0")) {
+    if (listener_) thread_ = std::thread([this] { serve(); });
+  }
+  ~WaitingPlayer() { thread_.join(); }
+
+  std::string address() const { return "127.0.0.1:" + std::to_string(listener_->port()); }
+
+ private:
+  void serve() {
+    auto channel = listener_->accept();
+    const DxpPlayer player = random_player(5);
+    while (channel && answer_dxp_game(*channel, player)) {
+    }
+  }
+
+  Result<Listener> listener_;
+  std::thread thread_;
+};
+
+TEST(DxpPartner, plays_on_is_set_back_and_begins_anew) {
+  WaitingPlayer waiting;
+  auto partner = DxpPartner::connect(waiting.address(), 10);
+  ASSERT_TRUE(partner);
+  Record record(international_rules, start_position(international_rules));
+  const auto ours = random_player(6);
+  for (int i = 0; i < 10; ++i) {
+    const auto move = partner->ask(record.position());
+    ASSERT_TRUE(move) << move.error().message;
+    record.play(*move);
+    record.play(ours.choose(record, 0, 0));
+  }
+  record.undo();
+  record.undo();  // the same question again, after it has moved: a new game from there
+  EXPECT_TRUE(partner->ask(record.position()));
+  EXPECT_TRUE(partner->ask(*read_fen(international_rules, "B:W28,K46:B1-20")));
+}
+
+TEST(DxpPartner, a_distant_player_may_be_the_opponent) {
+  WaitingPlayer waiting;
+  OpponentOptions options;
+  options.lockstep = true;
+  options.mind = "dxp:" + waiting.address();
+  auto opponent = make_opponent(options);
+  ASSERT_TRUE(opponent) << opponent.error().message;
+  (*opponent)->think("W:W31-50:B1-20");
+  const auto answer = **(*opponent)->poll();
+  EXPECT_TRUE(read_move(international_rules, start_position(international_rules), answer.move)) << answer.move;
+  options.mind = "dxp:127.0.0.1:1";
+  EXPECT_FALSE(make_opponent(options));
 }
 
 TEST(Connecting, fails_with_a_sentence) {

@@ -7,6 +7,7 @@
 #include "game_controller/notation/fen.hpp"
 #include "game_controller/rules/generate.hpp"
 #include "game_controller/training/fit.hpp"
+#include "game_controller/training/lessons_file.hpp"
 #include "game_controller/training/self_play.hpp"
 #include "game_controller/training/weights_file.hpp"
 
@@ -107,6 +108,35 @@ TEST(Fit, finds_what_decides) {
   const auto with = *read_fen(international_rules, "W:W28,36-45:B6-16");
   const auto without = *read_fen(international_rules, "W:W46,36-45:B6-16");
   EXPECT_GT(pattern_value(weights, with), pattern_value(weights, without));
+}
+
+// Played in one go or in two parts: the same lessons.
+TEST(LessonsFile, is_gone_on_from_read_and_refused_if_damaged) {
+  const std::string file = ::testing::TempDir() + "counterpart_test.lessons";
+  std::remove(file.c_str());
+  EXPECT_EQ(read_lessons(file).error().code, ErrorCode::not_found);
+  SelfPlayOptions options;
+  options.games = 2;
+  options.depth = 2;
+  const auto together = play_lessons(options);
+  options.games = 1;
+  for (options.first_game = 0; options.first_game < 2; ++options.first_game) {
+    ASSERT_TRUE(append_lessons(play_lessons(options), file));
+  }
+  const auto read = read_lessons(file);
+  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_EQ(read->size(), together.size());
+  for (std::size_t i = 0; i < together.size(); ++i) {
+    EXPECT_EQ((*read)[i].position, together[i].position);
+    EXPECT_EQ((*read)[i].result, together[i].result);
+    EXPECT_EQ((*read)[i].value, together[i].value);
+    EXPECT_EQ((*read)[i].game, together[i].game);
+  }
+  std::FILE* f = std::fopen(file.c_str(), "ab");
+  for (int i = 0; i < 40; ++i) std::fputc(0xFF, f);  // as long as a lesson, but none
+  std::fclose(f);
+  EXPECT_EQ(read_lessons(file).error().code, ErrorCode::bad_format);
+  std::remove(file.c_str());
 }
 
 TEST(WeightsFile, is_read_as_written_and_refused_if_damaged) {
