@@ -35,7 +35,7 @@ std::string pdn_result(GameResult result) {
 void PdnLines::word(std::string word) {
   if (word.empty()) return;
   if (word.front() == '%' && (column_ == 0 || column_ + 1 + word.size() > line_width)) {
-    word.insert(0, " ");  // in the first column it would be a comment line
+    word.insert(word.begin(), ' ');  // in the first column it would be a comment line
   }
   if (column_ > 0 && column_ + 1 + word.size() > line_width) {
     text_ += '\n';
