@@ -35,6 +35,13 @@ constexpr std::size_t fixture_samples = 400;
 
 const std::vector<FitRound> usual_rounds = {{1, 6, 3, 2}, {0, 4, 2, 2}, {0, 3, 1, 2}};
 const std::vector<FitRound> wide_rounds = {{2, 6, 2, 2}, {1, 8, 2, 2}, {1, 5, 2, 2}, {0, 4, 1, 2}, {0, 3, 1, 2}};
+// A picture that motion has smeared has its edges on the coarse level only, weaker than they were.
+const std::vector<FitRound> smeared_rounds = {{2, 7, 1, 3, true}, {2, 5, 1, 3, true}, {2, 4, 1, 3, true}};
+constexpr double least_smeared_share = 0.4, largest_smeared_rms_px = 2.8;
+
+// Few edges, and those not where all the others say: a cover hides edges, but leaves the others in their places.
+constexpr double smeared_if_fewer = 0.65, smeared_if_rms_px = 0.35;
+
 const std::vector<FitRound> settle_rounds = {{1, 5, 2, 2}, {0, 5, 1, 3}, {0, 3, 1, 3}};
 
 // Squares that a pose may be brought back by, one or two at a time.
@@ -103,6 +110,10 @@ cv::Rect part_with(const Model& model, const BoardGeometry& board, const Intrins
                       static_cast<int>((box.y - room_px) / cell) * cell);
   const cv::Point high(static_cast<int>(box.x + box.width + room_px), static_cast<int>(box.y + box.height + room_px));
   return cv::Rect(low, high) & whole;
+}
+
+bool looks_smeared(const PoseFit& fit) {
+  return fit.share() < smeared_if_fewer && fit.rms_px > smeared_if_rms_px;
 }
 
 double angle_between(const Isometry3d& a, const Isometry3d& b) {
@@ -206,9 +217,12 @@ BoardTracker::Attempt BoardTracker::attempt(const PictureView& view, const Isome
     probe.y += static_cast<float>(view.part.y);
   }
   const bool from_above = (result.fit.X_CM.inverse().translation()).z() > 0;
+  const bool smeared = rounds.back().smeared;
+  const double allowed_rms_px = smeared ? largest_smeared_rms_px : largest_rms_px;
+  const double needed_share = smeared ? least_smeared_share : least_share;
   const bool supported = result.check.support >= least_support || held_by_fixtures(result.fit);
-  result.good = from_above && result.fit.accepted >= least_points && result.fit.share() >= least_share &&
-                result.fit.rms_px <= largest_rms_px && supported && result.check.contradicted <= most_contradicted &&
+  result.good = from_above && result.fit.accepted >= least_points && result.fit.share() >= needed_share &&
+                result.fit.rms_px <= allowed_rms_px && supported && result.check.contradicted <= most_contradicted &&
                 !result.check.shifted();
   return result;
 }
@@ -379,7 +393,7 @@ std::optional<BoardTracker::Attempt> BoardTracker::follow_nearby(const cv::Mat& 
   if (part.empty()) return std::nullopt;
   const PictureView view = view_of(picture_bgr, part, pyramid_levels);
   Attempt tried = attempt(view, predicted, usual_rounds);
-  if (!tried.good || doubtful(tried) || tried.check.may_be_shifted()) return std::nullopt;
+  if (!tried.good || doubtful(tried) || tried.check.may_be_shifted() || looks_smeared(tried.fit)) return std::nullopt;
   return tried;
 }
 
@@ -400,6 +414,16 @@ BoardTracker::Attempt BoardTracker::follow(const PictureView& view, std::int64_t
     if (best->good && !doubtful(*best)) break;
   }
   return *std::move(best);
+}
+
+// Where the edges are few and out of place, motion may have smeared them: whichever explains more of the picture.
+BoardTracker::Attempt BoardTracker::follow_smeared(const PictureView& view, std::int64_t time_ns, Attempt sharp) const {
+  if (sharp.good && !looks_smeared(sharp.fit)) return sharp;
+  for (const Predictor predictor : {Predictor::first, Predictor::second}) {
+    Attempt tried = attempt(view, motion_.predict(time_ns, predictor), smeared_rounds);
+    if (tried.good && (!sharp.good || tried.check.support > sharp.check.support)) sharp = std::move(tried);
+  }
+  return sharp;
 }
 
 // A lamp that goes on or off, or a camera that adapts, changes all edges alike. Returns whether anything changed.
@@ -440,6 +464,7 @@ TrackedBoard BoardTracker::track(const cv::Mat& picture_bgr, std::int64_t time_n
   if (!found && tracking_ && !start_X_CB_) {
     Attempt tried = follow(whole_view(), time_ns);
     if (!tried.good && follow_light(tried.fit)) tried = follow(whole_view(), time_ns);
+    tried = follow_smeared(whole_view(), time_ns, std::move(tried));
     result.fit = tried.fit;
     result.check = tried.check;
     if (tried.good) found = std::move(tried);

@@ -74,6 +74,7 @@ class BoardTracker {
   double outline_share(const PoseFit& fit) const;
   std::optional<Attempt> follow_nearby(const cv::Mat& picture_bgr, std::int64_t time_ns) const;
   Attempt follow(const PictureView& view, std::int64_t time_ns) const;
+  Attempt follow_smeared(const PictureView& view, std::int64_t time_ns, Attempt sharp) const;
   void forget_looks();
   void predict_zoom();
   bool follow_light(const PoseFit& fit);
