@@ -3,19 +3,17 @@
 and writes the report. ./demo builds everything and then runs this; tests run it too. Standard library only."""
 
 import argparse
-import csv
 import json
 import math
 import os
 import re
 import signal
 import socket
-import statistics
 import subprocess
 import sys
 import time
 
-from truth import corners, degrees_between, pose_in, quantile, read_truth, rms_px
+from truth import corners, degrees_between, median, pose_in, quantile, read_rows, read_truth, rms_px
 
 
 def say(text):
@@ -120,27 +118,26 @@ def watch(cast, tracker, out, options):
 def summary(values):
     if not values:
         return None
-    return {"median": statistics.median(values), "p95": quantile(values, 0.95), "max": max(values)}
+    return {"median": median(values), "p95": quantile(values, 0.95), "max": max(values)}
 
 
 def pose_error(poses_file, truth_file):
     """The tracker's poses against the stage's truth: millimetres, degrees, and pixels at the board's corners."""
     truth = {entry["frame"]: entry for entry in read_truth(truth_file)}
     mm, degrees, pixels, lost, compared = [], [], [], 0, 0
-    with open(poses_file) as table:
-        for row in csv.DictReader(table):
-            entry = truth.get(int(row["frame"]))
-            if entry is None:
-                continue
-            compared += 1
-            if row["status"] == "lost":
-                lost += 1
-                continue
-            true, told = entry["X_CB"], pose_in(row)
-            mm.append(1000 * math.dist(told["p"], true["p"]))
-            degrees.append(degrees_between(told["q"], true["q"]))
-            camera, board = entry["intrinsics"], entry["board"]
-            pixels.append(rms_px(corners(camera, told, board), corners(camera, true, board)))
+    for row in read_rows(poses_file):
+        entry = truth.get(int(row["frame"]))
+        if entry is None:
+            continue
+        compared += 1
+        if row["status"] == "lost":
+            lost += 1
+            continue
+        true, told = entry["X_CB"], pose_in(row)
+        mm.append(1000 * math.dist(told["p"], true["p"]))
+        degrees.append(degrees_between(told["q"], true["q"]))
+        camera, board = entry["intrinsics"], entry["board"]
+        pixels.append(rms_px(corners(camera, told, board), corners(camera, true, board)))
     return {"frames_compared": compared, "lost": lost, "mm": summary(mm), "deg": summary(degrees), "corner_px_rms": summary(pixels)}
 
 

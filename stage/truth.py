@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import os
 import statistics
 
 
@@ -16,6 +17,13 @@ def read_rows(path):
     """The lines of a tracker's poses.csv."""
     with open(path) as lines:
         return list(csv.DictReader(lines))
+
+
+def link_pictures(sequence, folder, files):
+    """The pictures of a sequence into a folder, and so many of its other files: what is not there cannot be looked at."""
+    for name in sorted(os.listdir(sequence)):
+        if name.startswith("frame_") or name in files:
+            os.symlink(os.path.join(os.path.abspath(sequence), name), os.path.join(folder, name))
 
 
 def vertices(model):

@@ -228,14 +228,10 @@ BoardTracker::Attempt BoardTracker::attempt(const PictureView& view, const Isome
 }
 
 bool BoardTracker::held_by_fixtures(const PoseFit& fit) const {
-  std::size_t searched = 0, accepted = 0;
-  for (std::size_t i = 0; i < fit.hits.size(); ++i) {
-    if (fit.samples[i] < board_samples_) continue;
-    ++searched;
-    if (fit.hits[i].verdict == EdgeVerdict::accepted) ++accepted;
-  }
-  return accepted >= least_points &&
-         static_cast<double>(accepted) >= least_fixture_share * static_cast<double>(searched);
+  HitCount count;
+  for (std::size_t i = 0; i < fit.hits.size(); ++i)
+    if (fit.samples[i] >= board_samples_) count.add(fit.hits[i]);
+  return count.accepted >= least_points && !count.fewer_than(least_fixture_share);
 }
 
 std::optional<BoardTracker::Attempt> BoardTracker::from_located(const LocatedBoard& located, const PictureView& view) {
@@ -374,15 +370,13 @@ BoardTracker::Attempt BoardTracker::brought_back(const PictureView& view, Attemp
 }
 
 double BoardTracker::outline_share(const PoseFit& fit) const {
-  int searched = 0, accepted = 0;
+  HitCount count;
   for (std::size_t i = 0; i < fit.hits.size(); ++i) {
     const EdgeSample& sample = samples_[fit.samples[i]];
     const bool outline = model_.segments[static_cast<std::size_t>(sample.segment)].outline;
-    if (!outline || fit.hits[i].verdict == EdgeVerdict::outside) continue;
-    ++searched;
-    if (fit.hits[i].verdict == EdgeVerdict::accepted) ++accepted;
+    if (outline && fit.hits[i].verdict != EdgeVerdict::outside) count.add(fit.hits[i]);
   }
-  return searched == 0 ? 0 : static_cast<double>(accepted) / searched;
+  return count.share();
 }
 
 // The usual case: the board is where it should be by now. Nothing if that is not beyond doubt.

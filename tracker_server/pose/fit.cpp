@@ -143,32 +143,20 @@ void judge_contrast(const std::vector<EdgeSample>& samples, PoseFit& fit) {
   }
 }
 
-struct Count {
-  std::size_t searched = 0, accepted = 0;
-  void add(const Count& other) {
-    searched += other.searched;
-    accepted += other.accepted;
-  }
-  bool fewer_than(double share) const { return static_cast<double>(accepted) < share * static_cast<double>(searched); }
-};
-
 // What lies over an edge shows edges of its own here and there, but seldom all along a stretch of it, nor along the
 // segments beside it.
 void judge_company(const Model& model, const std::vector<EdgeSample>& samples, PoseFit& fit) {
   constexpr std::size_t company = 3, stretch = 4;  // neighbouring points; so many vouch for each other
   constexpr double least_own = 0.5, least_beside = 0.33;
-  std::vector<Count> counts(model.segments.size());
+  std::vector<HitCount> counts(model.segments.size());
   const auto segment_of = [&](std::size_t i) { return static_cast<std::size_t>(samples[fit.samples[i]].segment); };
-  const auto count_of = [&](std::size_t i) {
-    return Count{1, fit.hits[i].verdict == EdgeVerdict::accepted ? std::size_t{1} : std::size_t{0}};
-  };
-  for (std::size_t i = 0; i < fit.hits.size(); ++i) counts[segment_of(i)].add(count_of(i));
+  for (std::size_t i = 0; i < fit.hits.size(); ++i) counts[segment_of(i)].add(fit.hits[i]);
   for (std::size_t first = 0, end = 0; first < fit.hits.size(); first = end) {
     const std::size_t segment = segment_of(first);
-    Count own;
+    HitCount own;
     for (end = first; end < fit.hits.size() && end < first + stretch && segment_of(end) == segment; ++end)
-      own.add(count_of(end));
-    Count around = counts[segment];
+      own.add(fit.hits[end]);
+    HitCount around = counts[segment];
     if (!model.beside.empty())
       for (const int other : model.beside[segment]) around.add(counts[static_cast<std::size_t>(other)]);
     const bool alone = (own.searched >= company && own.fewer_than(least_own)) ||

@@ -48,6 +48,20 @@ struct FocalPrior {
   double information = 0;  // 1 / variance
 };
 
+// How many of the points that were looked for found their edge.
+struct HitCount {
+  std::size_t searched = 0, accepted = 0;
+  void add(const EdgeHit& hit) {
+    add(HitCount{1, hit.verdict == EdgeVerdict::accepted ? std::size_t{1} : std::size_t{0}});
+  }
+  void add(const HitCount& other) {
+    searched += other.searched;
+    accepted += other.accepted;
+  }
+  bool fewer_than(double share) const { return static_cast<double>(accepted) < share * static_cast<double>(searched); }
+  double share() const { return searched == 0 ? 0 : static_cast<double>(accepted) / static_cast<double>(searched); }
+};
+
 struct PoseFit {
   Eigen::Isometry3d X_CM;
   Intrinsics camera;  // the focal length may have been estimated

@@ -16,6 +16,7 @@
 #include "tests/support/program.hpp"
 #include "tests/tracker_server/support/board_picture.hpp"
 #include "tests/tracker_server/support/cube_picture.hpp"
+#include "tracker_server/camera/camera_json.hpp"
 
 namespace counterpart {
 namespace {
@@ -27,12 +28,6 @@ using testing_support::run;
 using testing_support::TemporaryFolder;
 
 namespace fs = std::filesystem;
-
-void write_camera(const Intrinsics& camera, const std::string& file) {
-  std::ofstream(file) << nlohmann::json{{"width", camera.width}, {"height", camera.height}, {"fx", camera.fx},
-                                        {"fy", camera.fy},       {"cx", camera.cx},         {"cy", camera.cy},
-                                        {"dist", camera.dist}};
-}
 
 void write_start(const Isometry3d& X_CM, const std::string& file) {
   const Eigen::Quaterniond q(X_CM.linear());
@@ -58,7 +53,7 @@ struct BoardFilm {
     scene.table_bgr = {215, 215, 210};  // unlike any face of the box
     X_BM.translation() = Vector3d(0.34, 0.02, test::cube_half_m);
     const Isometry3d X_CB = X_at(0);
-    write_camera(scene.camera, folder.path("camera.json"));
+    EXPECT_TRUE(write_camera_json(folder.path("camera.json"), scene.camera));
     write_start(X_CB, folder.path("init.json"));
     fs::create_directories(folder.path("objects/box"));
     std::ofstream(folder.path("objects/box/model.obj")) << test::cube_obj();
@@ -221,7 +216,7 @@ TEST(Track, ABoardLargerThanThePictureIsLostAndNotGuessed) {
   test::BoardScene scene;
   scene.camera = test::camera_720x576(700);
   scene.X_CB = test::looking_at_board(0.12, 1.2, 0.1);  // three squares fill the picture
-  write_camera(scene.camera, folder.path("camera.json"));
+  ASSERT_TRUE(write_camera_json(folder.path("camera.json"), scene.camera));
   write_picture(test::paint(scene, 2), folder.folder(), 0);
   const Outcome outcome = run("tracker_server", {"track", folder.folder(), "--poses", folder.path("out.csv")});
   EXPECT_EQ(outcome.exit_code, 1);

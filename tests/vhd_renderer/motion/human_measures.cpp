@@ -467,4 +467,12 @@ void play_every_clip(const Figure& figure, PoseJudge& judge) {
   }
 }
 
+void expect_within_bounds(const PoseJudge& judge) {
+  for (const auto& [name, worst] : judge.beyond_deg) {
+    ADD_FAILURE() << name << " is " << worst.value << " degrees beyond its range, " << worst.when;
+  }
+  EXPECT_LT(judge.turn_deg.value, largest_turn_deg()) << judge.turn_deg.joint << ", " << judge.turn_deg.when;
+  EXPECT_LT(judge.move_m.value, largest_move_m()) << judge.move_m.joint << ", " << judge.move_m.when;
+}
+
 }  // namespace counterpart

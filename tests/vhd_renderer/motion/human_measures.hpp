@@ -60,6 +60,9 @@ class PoseJudge {
   BodyPose before_;
 };
 
+// Fails the test that runs for every angle that left its range, a joint that jumped, and a pose that is none.
+void expect_within_bounds(const PoseJudge& judge);
+
 using Moves = std::vector<std::pair<int, int>>;  // squares
 
 // Every square once as origin and once as target; near and far in turn.

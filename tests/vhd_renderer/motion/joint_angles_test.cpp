@@ -58,11 +58,7 @@ TEST(JointLimits, HoldInEveryClipAndNothingJumps) {
   const Figure figure = mannequin();
   PoseJudge judge(figure);
   play_every_clip(figure, judge);
-  for (const auto& [name, worst] : judge.beyond_deg) {
-    ADD_FAILURE() << name << " is " << worst.value << " degrees beyond its range, " << worst.when;
-  }
-  EXPECT_LT(judge.turn_deg.value, largest_turn_deg()) << judge.turn_deg.joint << ", " << judge.turn_deg.when;
-  EXPECT_LT(judge.move_m.value, largest_move_m()) << judge.move_m.joint << ", " << judge.move_m.when;
+  expect_within_bounds(judge);
 }
 
 }  // namespace
