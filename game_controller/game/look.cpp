@@ -96,7 +96,8 @@ void Game::State::look_for_move(const Reading& reading) {
   if (try_moves(reading) || !settled()) return;
   const Bits seen = (reading.occupied & ~reading.unknown) | (mine & reading.unknown);
   const Verdict verdict = judge_own(*rules, record.position(), seen, reading.strays);
-  const bool may_be_hidden = verdict.move || verdict.reason == "piece_vanished" || verdict.reason == "no_change";
+  const bool may_be_hidden = verdict.move || verdict.reason == "piece_vanished" || verdict.reason == "no_change" ||
+                             !fitting_moves(reading).empty();
   if (reading.unknown != 0 && may_be_hidden) {
     report_unclear(reading.unknown);
   } else if (!verdict.move) {
@@ -104,18 +105,23 @@ void Game::State::look_for_move(const Reading& reading) {
   }
 }
 
-// Plays the legal move that the board shows, if there is one and its ends are both seen.
-bool Game::State::try_moves(const Reading& reading) {
-  if (!reading.strays.empty()) return false;
+// The legal moves after which the board would look so, as far as it is seen.
+std::vector<Move> Game::State::fitting_moves(const Reading& reading) const {
   const Bits mine = real_pieces();
   std::vector<Move> fitting;
   MoveList legal;
   generate(*rules, record.position(), legal);
   for (const Move& move : legal) {
-    const Bits ends = one(move.from) | one(move.to);
-    if (move.from == move.to || (ends & reading.unknown) != 0) continue;
-    if (!differs(reading, (mine & ~one(move.from)) | one(move.to))) fitting.push_back(move);
+    if (move.from != move.to && !differs(reading, (mine & ~one(move.from)) | one(move.to))) fitting.push_back(move);
   }
+  return fitting;
+}
+
+// Plays the legal move that the board shows, if there is one and its ends are both seen.
+bool Game::State::try_moves(const Reading& reading) {
+  const Bits mine = real_pieces();
+  std::vector<Move> fitting = fitting_moves(reading);
+  std::erase_if(fitting, [&](const Move& move) { return ((one(move.from) | one(move.to)) & reading.unknown) != 0; });
   if (fitting.empty()) return false;
   if (fitting.size() > 1) {
     const auto passed = [&](const Move& move) {

@@ -3,6 +3,11 @@
 #include <algorithm>
 
 namespace counterpart {
+namespace {
+
+constexpr std::int64_t longest_between_ns = 250'000'000;  // two sights of one look; a slow camera takes its time
+
+}  // namespace
 
 Reading reading_of(const Occupancy& occupancy, int squares_a_side) {
   Reading reading;
@@ -36,11 +41,14 @@ void SteadyReading::see(const Occupancy& occupancy, int squares_a_side, std::int
     since_ns_ = now_ns - (reading.covered ? 0 : std::max<std::int64_t>(occupancy.stable_ns, 0));
     reading_ = std::move(reading);
     seen_ = true;
+  } else {
+    since_ns_ += std::max<std::int64_t>(0, now_ns - looked_ns_ - longest_between_ns);
   }
+  looked_ns_ = now_ns;
 }
 
 std::int64_t SteadyReading::steady_ns(std::int64_t now_ns) const {
-  return seen_ && !reading_.covered ? now_ns - since_ns_ : -1;
+  return seen_ && !reading_.covered ? std::min(now_ns, looked_ns_ + longest_between_ns) - since_ns_ : -1;
 }
 
 }  // namespace counterpart

@@ -30,13 +30,15 @@ class SteadyReading {
 
   const Reading& reading() const { return reading_; }
 
-  // For how long the board has been seen so, uncovered; -1 if it is not seen.
+  // For how long the board has been seen so, uncovered; -1 if it is not seen. Time in which nobody looked (the board was
+  // out of the picture) does not count.
   std::int64_t steady_ns(std::int64_t now_ns) const;
 
  private:
   Reading reading_;
   bool seen_ = false;
-  std::int64_t since_ns_ = 0;
+  std::int64_t since_ns_ = 0;   // time without sights left out
+  std::int64_t looked_ns_ = 0;  // last sight
 };
 
 }  // namespace counterpart

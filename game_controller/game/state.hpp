@@ -71,6 +71,7 @@ struct Game::State {
   void look_while_waiting(const Reading& reading);
   void look_for_removal(const Reading& reading);
   void look_at_wrong_board(const Reading& reading);
+  std::vector<Move> fitting_moves(const Reading& reading) const;
   bool try_moves(const Reading& reading);
   bool differs(const Reading& reading, Bits expected) const;
   bool settled() const;

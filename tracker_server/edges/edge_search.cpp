@@ -59,16 +59,9 @@ Choice choose_edge(const Profile& profile, int steps, float min_contrast, float 
   return best;
 }
 
-// Between two pixels by a parabola through the peak; a step that motion has smeared shows a plateau, and lies in its
-// middle.
-float place_of_edge(const Profile& profile, int steps, int best) {
-  constexpr float on_plateau = 0.8F;
-  constexpr int longest_peak = 4;  // of a sharp step
+// Between two pixels, by a parabola through the peak.
+float place_of_edge(const Profile& profile, int best) {
   const auto step = [&](int k) { return profile.step[static_cast<std::size_t>(k)]; };
-  int first = best, last = best;
-  while (first > 0 && step(first - 1) > on_plateau * step(best)) --first;
-  while (last + 1 < steps && step(last + 1) > on_plateau * step(best)) ++last;
-  if (last - first + 1 > longest_peak) return 0.5F * static_cast<float>(first + last);
   const float before = step(best - 1), after = step(best + 1);
   const float bend = before - 2 * step(best) + after;
   return static_cast<float>(best) + (bend < -1e-6F ? 0.5F * (before - after) / bend : 0.0F);
@@ -114,7 +107,7 @@ EdgeHit search_edge(const cv::Mat1b& picture, const EdgeProbe& probe, int reach,
   const int best = choice.place;
 
   EdgeHit hit;
-  hit.distance = place_of_edge(profile, steps, best) - static_cast<float>(reach);
+  hit.distance = place_of_edge(profile, best) - static_cast<float>(reach);
   const float* g = profile.grey.data() + best;
   hit.contrast = 0.5F * (g[3] + g[4] - g[0] - g[1]);
   hit.grey = 0.25F * (g[0] + g[1] + g[3] + g[4]);

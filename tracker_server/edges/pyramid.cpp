@@ -10,7 +10,7 @@ Pyramid build_pyramid(const cv::Mat& picture, int levels) {
   if (picture.channels() == 3)
     cv::cvtColor(picture, grey, cv::COLOR_BGR2GRAY);
   else
-    grey = picture;
+    grey = picture.clone();  // a pyramid may be kept for longer than its picture
   pyramid.levels.push_back(grey);
   for (int level = 1; level < levels; ++level) {
     const cv::Mat1b& finer = pyramid.levels.back();

@@ -10,6 +10,9 @@ namespace {
 // A reading counts once it was the same so many frames in a row.
 constexpr int frames_to_believe = 3;
 
+// After a longer time without a picture of the board, anything may have happened to it.
+constexpr std::int64_t longest_between_ns = 250'000'000;
+
 // Whether all the real pieces that are expected belong to one side.
 bool one_side(const std::string& expected) {
   const bool dark = expected.find_first_of("bB") != std::string::npos;
@@ -58,7 +61,8 @@ PieceReading PieceReader::read(const BoardView& view, const FrameStamp& stamp, c
   occupancy.squares = squares_;
   occupancy.cells.resize(memory_.size());
 
-  bool changed = !started_;
+  bool changed = !started_ || stamp.capture_ns - read_ns_ > longest_between_ns;
+  read_ns_ = stamp.capture_ns;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
     CellMemory& memory = memory_[i];
     // A reflection, or a hand that hides nothing but this square: what looks empty need not be.

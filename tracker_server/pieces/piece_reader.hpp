@@ -55,6 +55,7 @@ class PieceReader {
   std::string expected_;
   std::vector<CellMemory> memory_;
   std::int64_t changed_ns_ = 0;
+  std::int64_t read_ns_ = 0;  // the last picture
   bool started_ = false;
 };
 

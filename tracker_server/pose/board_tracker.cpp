@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <opencv2/imgproc.hpp>
@@ -35,12 +36,17 @@ constexpr std::size_t fixture_samples = 400;
 
 const std::vector<FitRound> usual_rounds = {{1, 6, 3, 2}, {0, 4, 2, 2}, {0, 3, 1, 2}};
 const std::vector<FitRound> wide_rounds = {{2, 6, 2, 2}, {1, 8, 2, 2}, {1, 5, 2, 2}, {0, 4, 1, 2}, {0, 3, 1, 2}};
-// A picture that motion has smeared has its edges on the coarse level only, weaker than they were.
-const std::vector<FitRound> smeared_rounds = {{2, 7, 1, 3, true}, {2, 5, 1, 3, true}, {2, 4, 1, 3, true}};
-constexpr double least_smeared_share = 0.4, largest_smeared_rms_px = 2.8;
+// A picture that motion has smeared must look like the reference view, smeared alike.
+constexpr double least_likeness = 0.45;
+constexpr std::array shutter_shares = {1.0, 0.5, 0.0};
+
+// The slower the board goes, the sharper it is seen: a reference view is replaced by one in which it goes hardly
+// faster.
+constexpr double sharp_way_px = 3;
+constexpr int oldest_reference = 100;  // frames: pieces move, lamps change
 
 // Few edges, and those not where all the others say: a cover hides edges, but leaves the others in their places.
-constexpr double smeared_if_fewer = 0.65, smeared_if_rms_px = 0.35;
+constexpr double smeared_if_fewer = 0.65, smeared_if_rms_px = 0.35, smeared_if_faster_px = 5;
 
 const std::vector<FitRound> settle_rounds = {{1, 5, 2, 2}, {0, 5, 1, 3}, {0, 3, 1, 3}};
 
@@ -112,8 +118,17 @@ cv::Rect part_with(const Model& model, const BoardGeometry& board, const Intrins
   return cv::Rect(low, high) & whole;
 }
 
-bool looks_smeared(const PoseFit& fit) {
-  return fit.share() < smeared_if_fewer && fit.rms_px > smeared_if_rms_px;
+bool looks_smeared(const PoseFit& fit, double way_px) {
+  const bool few = fit.share()<smeared_if_fewer, out_of_place = fit.rms_px> smeared_if_rms_px;
+  return way_px > smeared_if_faster_px ? few || out_of_place : few && out_of_place;
+}
+
+void put_into_whole_picture(const PictureView& view, PoseFit& fit) {
+  fit.camera = view.camera_of_whole(fit.camera);
+  for (EdgeProbe& probe : fit.probes) {
+    probe.x += static_cast<float>(view.part.x);
+    probe.y += static_cast<float>(view.part.y);
+  }
 }
 
 double angle_between(const Isometry3d& a, const Isometry3d& b) {
@@ -162,6 +177,7 @@ void BoardTracker::forget() {
   start_X_CB_.reset();
   start_corners_.reset();
   motion_.forget();
+  reference_.reset();
   ever_seen_ = false;
   forget_looks();
 }
@@ -201,6 +217,7 @@ void BoardTracker::turn_round() {
 BoardTracker::Attempt BoardTracker::attempt(const PictureView& view, const Isometry3d& start,
                                             const std::vector<FitRound>& rounds) const {
   Attempt result;
+  result.view = view;
   const auto visible = visible_samples(model_, samples_, start);
   const Intrinsics camera = view.camera_of_part(camera_);
   if (options_.optimizer.gradient_image) {
@@ -211,18 +228,11 @@ BoardTracker::Attempt BoardTracker::attempt(const PictureView& view, const Isome
   }
   if (!result.fit.X_CM.matrix().allFinite() || result.fit.X_CM.translation().z() <= 0) return result;
   result.check = check_chequer(view.pyramid.levels[0], options_.board, result.fit.camera, result.fit.X_CM, contrast_);
-  result.fit.camera = view.camera_of_whole(result.fit.camera);
-  for (EdgeProbe& probe : result.fit.probes) {
-    probe.x += static_cast<float>(view.part.x);
-    probe.y += static_cast<float>(view.part.y);
-  }
+  put_into_whole_picture(view, result.fit);
   const bool from_above = (result.fit.X_CM.inverse().translation()).z() > 0;
-  const bool smeared = rounds.back().smeared;
-  const double allowed_rms_px = smeared ? largest_smeared_rms_px : largest_rms_px;
-  const double needed_share = smeared ? least_smeared_share : least_share;
   const bool supported = result.check.support >= least_support || held_by_fixtures(result.fit);
-  result.good = from_above && result.fit.accepted >= least_points && result.fit.share() >= needed_share &&
-                result.fit.rms_px <= allowed_rms_px && supported && result.check.contradicted <= most_contradicted &&
+  result.good = from_above && result.fit.accepted >= least_points && result.fit.share() >= least_share &&
+                result.fit.rms_px <= largest_rms_px && supported && result.check.contradicted <= most_contradicted &&
                 !result.check.shifted();
   return result;
 }
@@ -297,8 +307,9 @@ void BoardTracker::learn(const Attempt& attempt) {
 }
 
 void BoardTracker::accept(const Attempt& attempt, std::int64_t time_ns) {
+  keep_reference(attempt);
   camera_ = attempt.fit.camera;
-  if (focal_.estimate) {
+  if (focal_.estimate && !attempt.smeared) {
     // What this picture alone says of the focal length once the pose is free to follow.
     const Eigen::Matrix<double, 6, 6> P = attempt.fit.information.topLeftCorner<6, 6>();
     const Eigen::Matrix<double, 6, 1> c = attempt.fit.information.col(6).head<6>();
@@ -312,7 +323,7 @@ void BoardTracker::accept(const Attempt& attempt, std::int64_t time_ns) {
   last_X_CB_ = attempt.fit.X_CM;
   last_support_ = attempt.check.support;
   motion_.add(attempt.fit.X_CM, time_ns);
-  learn(attempt);
+  if (!attempt.smeared) learn(attempt);
   tracking_ = true;
   ever_seen_ = true;
   frames_unseen_ = 0;
@@ -387,7 +398,9 @@ std::optional<BoardTracker::Attempt> BoardTracker::follow_nearby(const cv::Mat& 
   if (part.empty()) return std::nullopt;
   const PictureView view = view_of(picture_bgr, part, pyramid_levels);
   Attempt tried = attempt(view, predicted, usual_rounds);
-  if (!tried.good || doubtful(tried) || tried.check.may_be_shifted() || looks_smeared(tried.fit)) return std::nullopt;
+  if (!tried.good || doubtful(tried) || tried.check.may_be_shifted() ||
+      looks_smeared(tried.fit, way_px(tried.fit.X_CM)))
+    return std::nullopt;
   return tried;
 }
 
@@ -410,14 +423,62 @@ BoardTracker::Attempt BoardTracker::follow(const PictureView& view, std::int64_t
   return *std::move(best);
 }
 
-// Where the edges are few and out of place, motion may have smeared them: whichever explains more of the picture.
+// How far the middle of the board has gone since the last picture, pixels.
+double BoardTracker::way_px(const Isometry3d& X_CB) const {
+  if (!last_X_CB_) return 0;
+  return (project(camera_, X_CB.translation()) - project(camera_, last_X_CB_->translation())).norm();
+}
+
+// Where the edges are few and out of place, motion may have smeared them: whichever pose looks most like the reference
+// view.
 BoardTracker::Attempt BoardTracker::follow_smeared(const PictureView& view, std::int64_t time_ns, Attempt sharp) const {
-  if (sharp.good && !looks_smeared(sharp.fit)) return sharp;
-  for (const Predictor predictor : {Predictor::first, Predictor::second}) {
-    Attempt tried = attempt(view, motion_.predict(time_ns, predictor), smeared_rounds);
-    if (tried.good && (!sharp.good || tried.check.support > sharp.check.support)) sharp = std::move(tried);
-  }
-  return sharp;
+  if (!reference_ || (sharp.good && !looks_smeared(sharp.fit, way_px(sharp.fit.X_CM)))) return sharp;
+  std::optional<ReferenceFit> best;
+  double shutter_share = 0;
+  const auto try_from = [&](const Isometry3d& start, double share) {
+    const MotionBlur blur{motion_.before_last(), *last_X_CB_, start, share};
+    const auto fit =
+        fit_to_reference(view.pyramid, view.camera_of_part(camera_), *reference_, options_.board, start, blur);
+    if (!fit || (best && fit->likeness <= best->likeness)) return;
+    best = fit;
+    shutter_share = share;
+  };
+  for (const double share : shutter_shares) try_from(motion_.predict(time_ns), share);
+  if (sharp.good) try_from(sharp.fit.X_CM, 0);
+  if (best && shutter_share == 0 && sharp.good) return sharp;  // without blur, edges are the more exact
+  const double share = best ? shutter_share : 1;
+  try_from(motion_.predict(time_ns, Predictor::second), share);
+  if (sharp.good) try_from(sharp.fit.X_CM, share);
+  if (!best || best->likeness < least_likeness) return sharp;
+  Attempt smeared = aligned(view, *best);
+  return smeared.good ? smeared : sharp;
+}
+
+BoardTracker::Attempt BoardTracker::aligned(const PictureView& view, const ReferenceFit& found) const {
+  Attempt result;
+  result.view = view;
+  result.smeared = true;
+  const Intrinsics camera = view.camera_of_part(camera_);
+  const auto visible = visible_samples(model_, samples_, found.X_CB);
+  result.fit = judge_pose(view.pyramid, model_, samples_, visible, camera, found.X_CB);
+  result.fit.information.setZero();
+  result.fit.information.topLeftCorner<6, 6>() = found.information;
+  put_into_whole_picture(view, result.fit);
+  // What is smeared has less contrast: measured by its own.
+  result.check = check_chequer(view.pyramid.levels[0], options_.board, camera, found.X_CB, 0);
+  const bool from_above = found.X_CB.inverse().translation().z() > 0;
+  result.good = from_above && result.check.support >= least_support && !result.check.shifted();
+  return result;
+}
+
+// The picture about to be accepted, if the board is seen as sharply in it as in the reference view.
+void BoardTracker::keep_reference(const Attempt& attempt) {
+  if (attempt.smeared) return;
+  const double way = tracking_ ? way_px(attempt.fit.X_CM) : std::numeric_limits<double>::infinity();
+  if (reference_ && ++reference_age_ < oldest_reference && way > std::max(sharp_way_px, reference_way_px_)) return;
+  reference_ = ReferenceView{attempt.view.pyramid, attempt.view.camera_of_part(attempt.fit.camera), attempt.fit.X_CM};
+  reference_way_px_ = way;
+  reference_age_ = 0;
 }
 
 // A lamp that goes on or off, or a camera that adapts, changes all edges alike. Returns whether anything changed.

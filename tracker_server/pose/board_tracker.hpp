@@ -19,6 +19,7 @@
 #include "tracker_server/pose/joined_model.hpp"
 #include "tracker_server/pose/lens_estimator.hpp"
 #include "tracker_server/pose/motion.hpp"
+#include "tracker_server/pose/reference_fit.hpp"
 
 namespace counterpart {
 
@@ -62,9 +63,11 @@ class BoardTracker {
 
  private:
   struct Attempt {
+    PictureView view;  // that it was made in
     PoseFit fit;
     ChequerCheck check;
     bool good = false;
+    bool smeared = false;  // by motion: aligned with the reference view, not by edges
   };
   Attempt attempt(const PictureView& view, const Eigen::Isometry3d& start, const std::vector<FitRound>& rounds) const;
   bool held_by_fixtures(const PoseFit& fit) const;
@@ -75,6 +78,9 @@ class BoardTracker {
   std::optional<Attempt> follow_nearby(const cv::Mat& picture_bgr, std::int64_t time_ns) const;
   Attempt follow(const PictureView& view, std::int64_t time_ns) const;
   Attempt follow_smeared(const PictureView& view, std::int64_t time_ns, Attempt sharp) const;
+  Attempt aligned(const PictureView& view, const ReferenceFit& fit) const;
+  double way_px(const Eigen::Isometry3d& X_CB) const;
+  void keep_reference(const Attempt& attempt);
   void forget_looks();
   void predict_zoom();
   bool follow_light(const PoseFit& fit);
@@ -96,6 +102,9 @@ class BoardTracker {
   double contrast_ = 0;      // grey levels between light and dark squares
   double last_support_ = 0;  // of the last pose that was believed
   std::optional<Eigen::Isometry3d> last_X_CB_;
+  std::optional<ReferenceView> reference_;
+  double reference_way_px_ = 0;  // that the board had gone since the picture before
+  int reference_age_ = 0;        // frames
   std::optional<Eigen::Isometry3d> start_X_CB_;
   std::optional<std::array<Eigen::Vector2d, 4>> start_corners_;
   int frames_unseen_ = 0;

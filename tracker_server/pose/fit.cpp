@@ -51,7 +51,7 @@ void aim(const std::vector<EdgeSample>& samples, const std::vector<std::size_t>&
     probe.nx = static_cast<float>(-along.y() / length);
     probe.ny = static_cast<float>(along.x() / length);
     probe.polarity = static_cast<std::int8_t>(sample.polarity);
-    probe.contrast = round.smeared ? 0 : sample.contrast;
+    probe.contrast = sample.contrast;
     fit.samples.push_back(visible[i]);
     fit.probes.push_back(probe);
   }
@@ -260,7 +260,7 @@ PoseFit fit_pose(const Pyramid& pyramid, const Model& model, const std::vector<E
     aim(samples, visible, fit.camera, fit.X_CM, round, fit);
     search_edges(pyramid.levels[static_cast<std::size_t>(round.level)], fit.probes, {round.reach_px, least_contrast},
                  fit.hits);
-    if (!round.smeared) judge_contrast(samples, fit);
+    judge_contrast(samples, fit);
     judge_company(model, samples, fit);
     fit.searched = fit.probes.size();
     const double reach_px = round.reach_px * static_cast<float>(1 << round.level);

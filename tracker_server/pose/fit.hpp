@@ -39,7 +39,6 @@ struct FitRound {
   float reach_px = 4;  // on that level
   int stride = 1;      // every so many-th sample
   int iterations = 2;
-  bool smeared = false;  // by motion: edges look weaker than they did
 };
 
 struct FocalPrior {

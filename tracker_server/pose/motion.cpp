@@ -32,6 +32,11 @@ void Motion::add(const Isometry3d& X, std::int64_t time_ns) {
   if (past_.size() > 3) past_.pop_front();
 }
 
+std::optional<Isometry3d> Motion::before_last() const {
+  if (past_.size() < 2) return std::nullopt;
+  return past_[past_.size() - 2].X;
+}
+
 Isometry3d Motion::predict(std::int64_t time_ns, Predictor predictor) const {
   if (past_.empty()) return Isometry3d::Identity();
   const Moment& last = past_.back();

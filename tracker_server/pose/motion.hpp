@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 
 #include <Eigen/Geometry>
@@ -21,6 +22,9 @@ class Motion {
 
   void add(const Eigen::Isometry3d& X, std::int64_t time_ns);
   void forget() { past_.clear(); }
+
+  // Of the poses given, the last but one.
+  std::optional<Eigen::Isometry3d> before_last() const;
 
   // The last pose if too little is known. Times may be uneven, and further ahead than one frame.
   Eigen::Isometry3d predict(std::int64_t time_ns) const { return predict(time_ns, predictor_); }

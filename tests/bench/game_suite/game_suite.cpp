@@ -27,6 +27,7 @@ struct SuiteOptions {
   std::uint64_t seed = 1;
   std::vector<std::string> methods{"appearance"};
   std::string out;
+  std::string log;
 };
 
 struct Task {
@@ -39,6 +40,13 @@ Result<Played> play(const Task& task, const SuiteOptions& options) {
   play.plies = options.plies;
   play.method = task.method == "appearance" ? ReadingMethod::appearance : ReadingMethod::scan_segments;
   play.stop = stop_requested;
+  std::ofstream log;
+  if (!options.log.empty()) {
+    const std::string name = options.log + "/game-" + std::to_string(task.game) + "-" + task.method + ".log";
+    log.open(name);
+    if (!log) return failure(ErrorCode::io, "cannot write " + name);
+    play.log = &log;
+  }
   return play_game(plan_game(options.seed, task.game, options.plies), play);
 }
 
@@ -152,6 +160,8 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->check(CLI::IsMember({"appearance", "scan-segments"}));
   app.add_option("--out", options.out, "the figures as JSON");
+  app.add_option("--log", options.log, "a folder: what happened in each game, a file each")
+      ->check(CLI::ExistingDirectory);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

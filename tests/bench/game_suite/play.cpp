@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <ctime>
 #include <optional>
+#include <ostream>
 #include <random>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "game_controller/notation/fen.hpp"
 #include "game_controller/notation/move_text.hpp"
 #include "game_controller/rules/generate.hpp"
+#include "protocol/vocabulary/board_geometry.hpp"
 #include "stage/film/film.hpp"
 #include "stage/record/record.hpp"
 #include "tracker_server/pipeline/observe.hpp"
@@ -64,6 +66,43 @@ bool same_move(const stage::PlayerMove& made, const std::vector<int>& path, std:
   return !path.empty() && made.path.front() == path.front() && made.path.back() == path.back() && really == captured;
 }
 
+const char* name_of(EventKind kind) {
+  switch (kind) {
+    case EventKind::game_started:
+      return "game started";
+    case EventKind::move:
+      return "move";
+    case EventKind::illegal_move:
+      return "illegal";
+    case EventKind::captured:
+      return "captured";
+    case EventKind::promoted:
+      return "promoted";
+    case EventKind::waiting_for_removal:
+      return "waiting for removal";
+    case EventKind::removal_done:
+      return "removal done";
+    case EventKind::turn:
+      return "turn";
+    case EventKind::board_unclear:
+      return "board unclear";
+    case EventKind::board_restored:
+      return "board restored";
+    case EventKind::set_up_wrong:
+      return "set up wrong";
+    case EventKind::game_over:
+      return "game over";
+    case EventKind::undone:
+      return "undone";
+  }
+  return "?";
+}
+
+std::ostream& operator<<(std::ostream& out, const std::vector<int>& squares) {
+  for (const int square : squares) out << ' ' << square;
+  return out;
+}
+
 // 'b' for every real piece: kings are crowned some time after their move.
 std::string men(std::string squares) {
   std::replace(squares.begin(), squares.end(), 'B', 'b');
@@ -98,6 +137,8 @@ class Match {
   void step();
   void obey(const GameOutputs& outputs);
   void watch(const stage::Truth& truth);
+  void log_event(const GameEvent& event);
+  void log_sight(const stage::Truth& truth, const Observation& observation);
   void check_commit(const GameEvent& event, const stage::Truth& truth);
   void check_objection(const GameEvent& event, const stage::Truth& truth);
   void answer_question(const GameEvent& event);
@@ -112,6 +153,7 @@ class Match {
   Played played_;
   std::vector<stage::BoardMoment> moments_;
   std::vector<std::pair<std::int64_t, std::uint64_t>> told_;  // when done, which command
+  std::string sight_;                                         // as logged last
   std::vector<Control> controls_;
   std::optional<std::string> answer_;
   std::int64_t now_ns_ = 0, last_move_ns_ = 0, clear_since_ns_ = 0;
@@ -176,7 +218,9 @@ void Match::step() {
     return true;
   });
   const GameOutputs outputs = game_.step(inputs);
+  if (options_.log != nullptr) log_sight(shot.truth, observation);
   for (const GameEvent& event : outputs.events) {
+    log_event(event);
     if (event.kind == EventKind::move) last_move_ns_ = now_ns_;
     if (event.kind == EventKind::move && event.side == Side::dark) check_commit(event, shot.truth);
     if (event.kind == EventKind::illegal_move) check_objection(event, shot.truth);
@@ -196,6 +240,43 @@ void Match::watch(const stage::Truth& truth) {
   const bool clear = truth.hand_share == 0 && truth.edges_hidden < kEdgesSeen && film_.world().light > kLightEnough;
   if (clear && !clear_) clear_since_ns_ = now_ns_;
   clear_ = clear;
+}
+
+void Match::log_event(const GameEvent& event) {
+  if (options_.log == nullptr) return;
+  *options_.log << 1e-9 * static_cast<double>(now_ns_) << " s: " << name_of(event.kind) << ' ' << event.move << ' '
+                << event.code << ", squares" << event.squares << ", captured" << event.captured;
+  if (event.kind == EventKind::move && !film_.player().moves().empty())
+    *options_.log << "; the player's last was " << text_of(film_.player().moves().back());
+  *options_.log << '\n';
+}
+
+// What the system sees, whenever that changes: "-": as it is, otherwise the squares that differ.
+void Match::log_sight(const stage::Truth& truth, const Observation& observation) {
+  std::string sight;
+  if (!observation.occupancy) {
+    sight = "no pose";
+  } else if (observation.occupancy->covered) {
+    sight = "covered";
+  } else {
+    const int squares = observation.occupancy->squares;
+    for (int square = 1; square <= playable_squares(squares); ++square) {
+      const Cell cell = cell_of_square(square, squares);
+      const CellReading reading =
+          observation.occupancy->cells[static_cast<std::size_t>(cell.row * squares + cell.col)].reading;
+      const char there = truth.occupancy[static_cast<std::size_t>(square - 1)];
+      if (reading == CellReading::unknown)
+        sight += " " + std::to_string(square) + " unknown";
+      else if ((reading != CellReading::empty) != (there != 'e'))
+        sight += " " + std::to_string(square) + (there == 'e' ? " is empty" : " is taken");
+    }
+    if (sight.empty()) sight = "-";
+  }
+  if (sight == sight_) return;
+  sight_ = sight;
+  *options_.log << 1e-9 * static_cast<double>(now_ns_) << " s, frame " << played_.frames << ": sees " << sight
+                << "; hand " << truth.hand_share << ", lines hidden " << truth.edges_hidden << ", light "
+                << film_.world().light << '\n';
 }
 
 void Match::check_commit(const GameEvent& event, const stage::Truth& truth) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct PlayOptions {
   double patience_s = 60;  // without any move for so long it is given up
   ReadingMethod method = ReadingMethod::appearance;
   std::function<bool()> stop = [] { return false; };
+  std::ostream* log = nullptr;  // a line for whatever happens in the game, and for squares that are read wrongly
 };
 
 struct Played {

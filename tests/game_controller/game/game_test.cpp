@@ -99,6 +99,38 @@ void reach_real_turn(Play& play) {
   }
 }
 
+// He moves while the board goes out of the picture and, when it comes back, half of it cannot be told yet: time in
+// which nobody looked says nothing about what stands there, and a piece seen on its new square is no piece too many
+// while its old square is not seen.
+TEST(Game, a_move_made_as_the_board_leaves_the_picture_is_not_called_wrong) {
+  Play play(options_from(), 5);
+  reach_real_turn(play);
+  // 17-22: its old square is among those that cannot be told, the new one is not.
+  play.table.pieces = (play.table.pieces & ~square_mask(17, 10)) | square_mask(22, 10);
+  Occupancy half_seen = play.table.seen(play.frame, false);
+  for (int row = 0; row < 10; ++row)
+    for (int col = 0; col < 3; ++col)
+      half_seen.cells[static_cast<std::size_t>(row * 10 + col)].reading = CellReading::unknown;
+  const auto look = [&](const std::optional<Occupancy>& sight) {
+    GameInputs in;
+    in.now_ns = play.frame++ * frame_ns;
+    in.sight = sight;
+    return play.game.step(in).events;
+  };
+  EXPECT_TRUE(look(half_seen).empty());
+  for (int i = 0; i < 60; ++i) EXPECT_TRUE(look(std::nullopt).empty());
+  EXPECT_TRUE(look(half_seen).empty()) << "one look after a long absence";
+  int unclear = 0;
+  for (int i = 0; i < 60; ++i)
+    for (const GameEvent& event : look(half_seen)) {
+      EXPECT_EQ(event.kind, EventKind::board_unclear);
+      ++unclear;
+    }
+  EXPECT_EQ(unclear, 1);
+  for (int i = 0; i < 8; ++i) look(play.table.seen(play.frame, false));
+  EXPECT_EQ(play.game.board_state().moves.back(), "17-22");
+}
+
 TEST(Game, an_illegal_move_is_named_and_put_back) {
   Play play(options_from(), 5);
   reach_real_turn(play);

@@ -145,6 +145,22 @@ TEST(PieceReader, BelievesOnlyWhatStays) {
   EXPECT_EQ(at(to), CellReading::dark);
 }
 
+TEST(PieceReader, TimeWithoutPicturesIsNotTimeWithoutChange) {
+  BoardScene scene = game_scene();
+  scene.pieces = {{cell_of_square(20, 10)}, {cell_of_square(33, 10)}};
+  const BoardView view = view_board(test::paint(scene, 2), 10, to_pixel(scene));
+  PieceReader reader(10);
+  FrameStamp stamp;
+  for (int i = 0; i < 8; ++i) {
+    stamp.capture_ns += 40'000'000;
+    reader.read(view, stamp);
+  }
+  stamp.capture_ns += 40'000'000;
+  EXPECT_GE(reader.read(view, stamp).occupancy.stable_ns, 200'000'000);
+  stamp.capture_ns += 2'000'000'000;
+  EXPECT_EQ(reader.read(view, stamp).occupancy.stable_ns, 0) << "the board was out of the picture";
+}
+
 TEST(PieceReader, NothingIsGuessedUnderAHand) {
   BoardScene scene = game_scene();
   scene.pieces = {{cell_of_square(20, 10)}, {cell_of_square(33, 10)}};
