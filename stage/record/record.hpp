@@ -32,8 +32,8 @@ struct BoardMoment {
 };
 
 // pdn: its last game is compared; the real player has the dark pieces. seen: in order of time. What was done less than
-// three seconds before the last of them need not be in the record yet. Fails if the PDN cannot be read or is of another
-// size of board.
+// three seconds before the last of them need not be in the record yet, and what the record's last move captured need
+// not be off the board. Fails if the PDN cannot be read or is of another size of board.
 [[nodiscard]] Result<RecordCheck> compare_record(std::string_view pdn, const std::vector<BoardMoment>& seen);
 
 // The same with what `stage` writes as truth.jsonl; fails if that cannot be read.

@@ -74,6 +74,14 @@ TEST(Record, AMoveThatIsNotInTheRecordIsNoticedUnlessItIsYoung) {
   EXPECT_FALSE(check(shorter, seen).agrees());
 }
 
+TEST(Record, WhatTheLastMoveCapturedMayStillStand) {
+  const std::string ends = "[GameType \"20\"]\n1. 32-28 19-23 2. 28x19 0-1\n";
+  Squares seen = {start(), moved(start(), 19, 23)};
+  for (int i = 0; i < 4; ++i) seen.push_back(seen.back());
+  EXPECT_TRUE(check(ends, seen).agrees()) << check(ends, seen).trouble;
+  EXPECT_FALSE(check(kGame, seen).agrees()) << "a move of his own is missing, too";
+}
+
 TEST(Record, AMoveThatNobodyMadeIsNoticed) {
   Squares seen = real_game();
   seen.pop_back();
