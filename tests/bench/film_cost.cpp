@@ -27,6 +27,7 @@ double cpu_ms() {
 
 int main(int argc, char** argv) {
   using namespace counterpart::stage;
+  setenv("LP_NUM_THREADS", "0", 0);  // as `stage` does
   const int frames = argc > 2 ? std::atoi(argv[2]) : 60;
   if (argc < 2 || frames < 1) {
     std::fprintf(stderr, "usage: film_cost SCENARIO [FRAMES]\n");
