@@ -246,6 +246,8 @@ void Match::log_event(const GameEvent& event) {
   if (options_.log == nullptr) return;
   *options_.log << 1e-9 * static_cast<double>(now_ns_) << " s: " << name_of(event.kind) << ' ' << event.move << ' '
                 << event.code << ", squares" << event.squares << ", captured" << event.captured;
+  if (event.kind == EventKind::move && event.side == Side::dark && clear_)
+    *options_.log << "; " << 1e-9 * static_cast<double>(now_ns_ - clear_since_ns_) << " s after the hand";
   if (event.kind == EventKind::move && !film_.player().moves().empty())
     *options_.log << "; the player's last was " << text_of(film_.player().moves().back());
   *options_.log << '\n';
