@@ -27,6 +27,8 @@ Result<Film> Film::begin(const Scenario& scenario) {
   options.height = scenario.intrinsics.height;
   options.board = scenario.board;
   options.objects = scenario.objects;
+  options.warp_m = scenario.warp_m;
+  options.warp_seed = scenario.seed;
   const auto& dist = scenario.intrinsics.dist;
   options.fine = std::any_of(dist.begin(), dist.end(), [](double k) { return k != 0; });
   Result<std::unique_ptr<Room>> room = Room::furnish(options);

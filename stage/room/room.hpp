@@ -18,6 +18,8 @@ struct RoomOptions {
   BoardGeometry board;
   Eigen::Vector3f light_direction_R{-0.45f, 0.25f, 0.85f};
   std::vector<ObjectPlan> objects;  // those that a world may hold, in its order
+  double warp_m = 0;                // by so much the board's top is off its plane at most
+  std::uint64_t warp_seed = 1;      // of the way it is
   bool fine = false;                // cuts flat things finer, for a lens that bends lines
   std::uint64_t seed = 1;           // of the grain of the wood
 };

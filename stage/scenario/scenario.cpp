@@ -228,6 +228,7 @@ Reader board_keys(Scenario& s) {
          return read;
        }},
       {"piece_height_mm", millimetres(s.board.piece_height_m, 1, 40)},
+      {"warp_mm", millimetres(s.warp_m, 0, 5)},
       {"empty", flag(s.no_pieces)},
       {"present",
        [&s](const Node& node) {

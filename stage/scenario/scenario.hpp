@@ -31,6 +31,7 @@ struct Scenario {
   double fps = 25;
   Intrinsics intrinsics{1, 720, 576, 610, 610, 359.5, 287.5, {}};
   BoardGeometry board;
+  double warp_m = 0;       // by so much the board's top is off its plane at most
   bool no_pieces = false;  // an empty board
   bool no_board = false;   // objects alone
   std::vector<ObjectPlan> objects;
