@@ -463,6 +463,9 @@ BoardTracker::Attempt BoardTracker::aligned(const PictureView& view, const Refer
   result.fit = judge_pose(view.pyramid, model_, samples_, visible, camera, found.X_CB);
   result.fit.information.setZero();
   result.fit.information.topLeftCorner<6, 6>() = found.information;
+  result.fit.searched = found.searched;
+  result.fit.accepted = found.agreeing;
+  result.fit.rms_px = found.rms_px;
   put_into_whole_picture(view, result.fit);
   // What is smeared has less contrast: measured by its own.
   result.check = check_chequer(view.pyramid.levels[0], options_.board, camera, found.X_CB, 0);

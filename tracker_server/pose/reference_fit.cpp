@@ -124,6 +124,7 @@ std::vector<BoardPoint> expect(const ReferenceView& reference, const BoardGeomet
 // A point as the picture shows it, and how that changes with the pose.
 struct Look {
   float expected, seen;
+  double steepness_px;  // grey levels a pixel
   Eigen::Matrix<double, 6, 1> slope;
 };
 
@@ -145,7 +146,7 @@ std::vector<Look> look(const cv::Mat1b& grey, int level, const Intrinsics& camer
     const double a = 0.5 * (right - left) * scale * camera.fx / p_C.z();
     const double b = 0.5 * (below - above) * scale * camera.fy / p_C.z();
     const Vector3d g(a, b, -(a * p_C.x() + b * p_C.y()) / p_C.z());
-    Look seen{point.expected, here, {}};
+    Look seen{point.expected, here, 0.5 * scale * std::hypot(right - left, below - above), {}};
     seen.slope << g, r_C.cross(g);
     looks.push_back(seen);
   }
@@ -209,7 +210,9 @@ bool improve(const std::vector<Look>& looks, Light& light, ReferenceFit& fit) {
   const double sigma = std::max(least_sigma, 1.48 * median(off));
   Matrix8 A = Matrix8::Zero();
   Vector8 b = Vector8::Zero();
-  std::size_t agreeing = 0;
+  fit.searched = looks.size();
+  fit.agreeing = 0;
+  double squares = 0, steepness = 0;
   for (const Look& l : looks) {
     const double residual = light.of(l.expected) - l.seen;
     const double ratio = residual / (agrees * sigma);
@@ -219,9 +222,12 @@ bool improve(const std::vector<Look>& looks, Light& light, ReferenceFit& fit) {
     J << l.slope, -l.expected, -1;
     A.noalias() += weight * J * J.transpose();
     b += weight * residual * J;
-    ++agreeing;
+    squares += weight * residual * residual;
+    steepness += weight * l.steepness_px * l.steepness_px;
+    ++fit.agreeing;
   }
-  if (agreeing < fewest_in_both) return false;
+  if (fit.agreeing < fewest_in_both) return false;
+  fit.rms_px = std::sqrt(squares / std::max(1.0, steepness));
   fit.information = A.topLeftCorner<6, 6>() / (sigma * sigma);
   const Vector8 scaling = A.diagonal().cwiseMax(1e-9).cwiseSqrt().cwiseInverse();
   Matrix8 scaled = scaling.asDiagonal() * A * scaling.asDiagonal();

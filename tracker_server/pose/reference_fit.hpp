@@ -34,6 +34,8 @@ struct ReferenceFit {
   Eigen::Matrix<double, 6, 6> information;  // of (translation, rotation vector), in C, rotation about B's origin
   // 0..1: how many points of the board look as expected, and how closely. A hand over a third of it leaves two thirds.
   double likeness = 0;
+  std::size_t searched = 0, agreeing = 0;  // points of the board
+  double rms_px = 0;                       // by so much the agreeing points would have to move to look as expected
 };
 
 // camera: of the picture (or part) that the pyramid holds. Empty if too little of the board is in both pictures, or the
