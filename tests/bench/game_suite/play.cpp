@@ -11,6 +11,7 @@
 #include "game_controller/notation/fen.hpp"
 #include "game_controller/notation/move_text.hpp"
 #include "game_controller/rules/generate.hpp"
+#include "protocol/codec/names.hpp"
 #include "protocol/vocabulary/board_geometry.hpp"
 #include "stage/film/film.hpp"
 #include "stage/record/record.hpp"
@@ -64,38 +65,6 @@ bool same_move(const stage::PlayerMove& made, const std::vector<int>& path, std:
   std::sort(really.begin(), really.end());
   std::sort(captured.begin(), captured.end());
   return !path.empty() && made.path.front() == path.front() && made.path.back() == path.back() && really == captured;
-}
-
-const char* name_of(EventKind kind) {
-  switch (kind) {
-    case EventKind::game_started:
-      return "game started";
-    case EventKind::move:
-      return "move";
-    case EventKind::illegal_move:
-      return "illegal";
-    case EventKind::captured:
-      return "captured";
-    case EventKind::promoted:
-      return "promoted";
-    case EventKind::waiting_for_removal:
-      return "waiting for removal";
-    case EventKind::removal_done:
-      return "removal done";
-    case EventKind::turn:
-      return "turn";
-    case EventKind::board_unclear:
-      return "board unclear";
-    case EventKind::board_restored:
-      return "board restored";
-    case EventKind::set_up_wrong:
-      return "set up wrong";
-    case EventKind::game_over:
-      return "game over";
-    case EventKind::undone:
-      return "undone";
-  }
-  return "?";
 }
 
 std::ostream& operator<<(std::ostream& out, const std::vector<int>& squares) {
