@@ -35,7 +35,7 @@ struct Round {
 constexpr Round rounds[] = {{2, 5}, {1, 4}, {1, 4}};
 
 // Bilinear; false outside.
-bool sample(const cv::Mat1b& grey, double x, double y, float& value) {
+inline bool sample(const cv::Mat1b& grey, double x, double y, float& value) {
   if (!(x >= 0 && y >= 0 && x < grey.cols - 1 && y < grey.rows - 1)) return false;
   const int column = static_cast<int>(x), row = static_cast<int>(y);
   const auto fx = static_cast<float>(x - column), fy = static_cast<float>(y - row);
@@ -259,7 +259,7 @@ std::optional<ReferenceFit> fit_to_reference(const Pyramid& pyramid, const Intri
           look(pyramid.levels[static_cast<std::size_t>(round.level)], round.level, camera, points, fit.X_CB);
       if (looks.size() < fewest_in_both) return std::nullopt;
       if (!light) light = first_light(looks);
-      fit.likeness = likeness_of(looks, *light);
+      if (i + 1 == round.iterations) fit.likeness = likeness_of(looks, *light);
       if (!improve(looks, *light, fit)) return std::nullopt;
     }
   }
