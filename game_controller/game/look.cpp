@@ -32,6 +32,11 @@ bool Game::State::differs(const Reading& reading, Bits expected) const {
   return ((reading.occupied ^ expected) & ~reading.unknown) != 0 || !reading.strays.empty();
 }
 
+// A square that glares for good must not stop the game; a board half out of the picture may hide anything.
+bool Game::State::nearly_all_seen(const Reading& reading) const {
+  return std::popcount(reading.unknown) * 10 <= playable_squares(rules->squares);
+}
+
 bool Game::State::settled() const {
   return eyes.steady_ns(now_ns) >= options.settle_ns;
 }
@@ -69,9 +74,7 @@ void Game::State::look_at_set_up(const Reading& reading) {
   const Bits expected = real_pieces();
   if (!differs(reading, expected)) {
     if (reading.unknown == 0) return begin();
-    // A square that glares for good must not keep the game from starting.
-    const bool nearly_all = std::popcount(reading.unknown) * 10 <= playable_squares(rules->squares);
-    if (settled() && nearly_all) return begin();
+    if (settled() && nearly_all_seen(reading)) return begin();
     if (settled()) report_unclear(reading.unknown);
     return;
   }
@@ -119,6 +122,7 @@ std::vector<Move> Game::State::fitting_moves(const Reading& reading) const {
 
 // Plays the legal move that the board shows, if there is one and its ends are both seen.
 bool Game::State::try_moves(const Reading& reading) {
+  if (!nearly_all_seen(reading)) return false;
   const Bits mine = real_pieces();
   std::vector<Move> fitting = fitting_moves(reading);
   std::erase_if(fitting, [&](const Move& move) { return ((one(move.from) | one(move.to)) & reading.unknown) != 0; });
@@ -197,6 +201,14 @@ void Game::State::look_at_wrong_board(const Reading& reading) {
   if (behind == GamePhase::virtual_to_move && pending) tolerated = pending->move.captured;
   Reading judged = reading;
   judged.unknown |= tolerated;
+  // What was wrong and cannot be seen now may still be so.
+  if (announced && ((announced->occupied ^ real_pieces()) & reading.unknown) != 0) {
+    if (settled() && now_ns - reminded_ns >= options.remind_ns) {
+      reminded_ns = now_ns;
+      human.say("put_back", sentence("put_back", {}));
+    }
+    return;
+  }
   if (!differs(judged, real_pieces())) return put_right();
   if (behind == GamePhase::real_to_move && try_moves(reading)) return;
   if (!settled()) return;

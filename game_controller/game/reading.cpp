@@ -6,6 +6,7 @@ namespace counterpart {
 namespace {
 
 constexpr std::int64_t longest_between_ns = 250'000'000;  // two sights of one look; a slow camera takes its time
+constexpr std::int64_t absence_ns = 1'000'000'000;        // after so long anything may have happened
 
 }  // namespace
 
@@ -36,7 +37,7 @@ Reading reading_of(const Occupancy& occupancy, int squares_a_side) {
 
 void SteadyReading::see(const Occupancy& occupancy, int squares_a_side, std::int64_t now_ns) {
   Reading reading = reading_of(occupancy, squares_a_side);
-  if (!seen_ || !(reading == reading_)) {
+  if (!seen_ || !(reading == reading_) || now_ns - looked_ns_ > absence_ns) {
     // The reader may know better than we how long nothing has changed (it sees every frame).
     since_ns_ = now_ns - (reading.covered ? 0 : std::max<std::int64_t>(occupancy.stable_ns, 0));
     reading_ = std::move(reading);

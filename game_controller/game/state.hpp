@@ -74,6 +74,7 @@ struct Game::State {
   std::vector<Move> fitting_moves(const Reading& reading) const;
   bool try_moves(const Reading& reading);
   bool differs(const Reading& reading, Bits expected) const;
+  bool nearly_all_seen(const Reading& reading) const;
   bool settled() const;
   bool reminding();
   void remember_stop(const Reading& reading);

@@ -131,6 +131,55 @@ TEST(Game, a_move_made_as_the_board_leaves_the_picture_is_not_called_wrong) {
   EXPECT_EQ(play.game.board_state().moves.back(), "17-22");
 }
 
+// Two of his pieces moved, which is objected to; then the squares of one of them cannot be told. What is left looks
+// like a legal move.
+TEST(Game, what_was_wrong_and_is_out_of_sight_is_not_forgiven) {
+  Play play(options_from(), 5);
+  reach_real_turn(play);
+  const Bits before = play.table.pieces;
+  play.put((before & ~square_mask(18, 10) & ~square_mask(20, 10)) | square_mask(23, 10) | square_mask(25, 10));
+  ASSERT_TRUE(play.until(EventKind::illegal_move));
+  EXPECT_EQ(play.events.back().code, "two_pieces_moved");
+  const auto look_without = [&](const std::vector<int>& hidden) {
+    Occupancy seen = play.table.seen(play.frame, false);
+    for (const int square : hidden) {
+      const Cell cell = cell_of_square(square, 10);
+      seen.cells[static_cast<std::size_t>(cell.row * 10 + cell.col)].reading = CellReading::unknown;
+    }
+    GameInputs in;
+    in.now_ns = play.frame++ * frame_ns;
+    in.sight = seen;
+    return play.game.step(in).events;
+  };
+  for (int i = 0; i < 60; ++i)
+    for (const GameEvent& event : look_without({20, 25})) EXPECT_NE(event.kind, EventKind::move) << event.move;
+  EXPECT_EQ(play.game.board_state().phase, GamePhase::illegal);
+  // The second piece is put back, and all is seen: the move counts.
+  play.table.pieces = (before & ~square_mask(18, 10)) | square_mask(23, 10);
+  for (int i = 0; i < 10; ++i) look_without({});
+  EXPECT_EQ(play.game.board_state().moves.back(), "18-23");
+}
+
+TEST(Game, a_move_counts_only_when_nearly_the_whole_board_is_seen) {
+  Play play(options_from(), 5);
+  reach_real_turn(play);
+  play.table.pieces = (play.table.pieces & ~square_mask(18, 10)) | square_mask(23, 10);
+  const auto look = [&](int unseen_columns) {
+    Occupancy seen = play.table.seen(play.frame, false);
+    for (int row = 0; row < 10; ++row)
+      for (int col = 0; col < unseen_columns; ++col)
+        seen.cells[static_cast<std::size_t>(row * 10 + col)].reading = CellReading::unknown;
+    GameInputs in;
+    in.now_ns = play.frame++ * frame_ns;
+    in.sight = seen;
+    return play.game.step(in).events;
+  };
+  for (int i = 0; i < 60; ++i)
+    for (const GameEvent& event : look(3)) EXPECT_EQ(event.kind, EventKind::board_unclear);
+  for (int i = 0; i < 10; ++i) look(1);
+  EXPECT_EQ(play.game.board_state().moves.back(), "18-23");
+}
+
 TEST(Game, an_illegal_move_is_named_and_put_back) {
   Play play(options_from(), 5);
   reach_real_turn(play);
