@@ -43,7 +43,7 @@ bool Game::State::settled() const {
 
 // True when something new is wrong or it is time to say it again.
 bool Game::State::reminding() {
-  if (announced && *announced == eyes.reading() && now_ns - reminded_ns < options.remind_ns) return false;
+  if (announced && agree(*announced, eyes.reading()) && now_ns - reminded_ns < options.remind_ns) return false;
   announced = eyes.reading();
   reminded_ns = now_ns;
   return true;
@@ -212,7 +212,7 @@ void Game::State::look_at_wrong_board(const Reading& reading) {
   if (!differs(judged, real_pieces())) return put_right();
   if (behind == GamePhase::real_to_move && try_moves(reading)) return;
   if (!settled()) return;
-  if (announced && !(*announced == reading)) {
+  if (announced && !agree(*announced, reading)) {
     // Something else is wrong now: look again as if nothing had been said.
     phase = behind;
     look();

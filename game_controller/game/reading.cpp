@@ -35,16 +35,23 @@ Reading reading_of(const Occupancy& occupancy, int squares_a_side) {
   return reading;
 }
 
+bool agree(const Reading& a, const Reading& b) {
+  return a.covered == b.covered && a.strays == b.strays && ((a.occupied ^ b.occupied) & ~a.unknown & ~b.unknown) == 0;
+}
+
 void SteadyReading::see(const Occupancy& occupancy, int squares_a_side, std::int64_t now_ns) {
   Reading reading = reading_of(occupancy, squares_a_side);
-  if (!seen_ || !(reading == reading_) || now_ns - looked_ns_ > absence_ns) {
+  if (!seen_ || !agree(reading, believed_) || now_ns - looked_ns_ > absence_ns) {
     // The reader may know better than we how long nothing has changed (it sees every frame).
     since_ns_ = now_ns - (reading.covered ? 0 : std::max<std::int64_t>(occupancy.stable_ns, 0));
-    reading_ = std::move(reading);
+    believed_ = reading;
     seen_ = true;
   } else {
     since_ns_ += std::max<std::int64_t>(0, now_ns - looked_ns_ - longest_between_ns);
   }
+  believed_.occupied = (reading.occupied & ~reading.unknown) | (believed_.occupied & reading.unknown);
+  believed_.unknown &= reading.unknown;
+  reading_ = std::move(reading);
   looked_ns_ = now_ns;
 }
 

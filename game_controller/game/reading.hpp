@@ -20,6 +20,9 @@ struct Reading {
   friend bool operator==(const Reading&, const Reading&) = default;
 };
 
+// Whether nothing that is seen in both speaks against their being the same: squares flicker between seen and not.
+bool agree(const Reading& a, const Reading& b);
+
 // All unknown if the occupancy is of another board size.
 Reading reading_of(const Occupancy& occupancy, int squares_a_side);
 
@@ -30,12 +33,13 @@ class SteadyReading {
 
   const Reading& reading() const { return reading_; }
 
-  // For how long the board has been seen so, uncovered; -1 if it is not seen. Time in which nobody looked (the board was
-  // out of the picture) does not count.
+  // For how long nothing that was seen has changed, uncovered; -1 if the board is not seen. Time in which nobody looked
+  // (the board was out of the picture) does not count.
   std::int64_t steady_ns(std::int64_t now_ns) const;
 
  private:
   Reading reading_;
+  Reading believed_;  // what cannot be told in the last reading is as it was seen before
   bool seen_ = false;
   std::int64_t since_ns_ = 0;   // time without sights left out
   std::int64_t looked_ns_ = 0;  // last sight

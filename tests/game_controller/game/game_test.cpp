@@ -180,6 +180,34 @@ TEST(Game, a_move_counts_only_when_nearly_the_whole_board_is_seen) {
   EXPECT_EQ(play.game.board_state().moves.back(), "18-23");
 }
 
+// Some squares can be told in one picture and not in the next; none is ever read wrongly.
+TEST(Game, squares_that_flicker_keep_nobody_waiting) {
+  Play play(options_from(), 1);
+  std::uint64_t random = 5;
+  const auto look = [&] {
+    Occupancy seen = play.table.seen(play.frame, false);
+    for (const int square : {22, 31, 37, 44}) {
+      const Cell cell = cell_of_square(square, 10);
+      if (simulated::next_random(random) % 2 == 0)
+        seen.cells[static_cast<std::size_t>(cell.row * 10 + cell.col)].reading = CellReading::unknown;
+    }
+    GameInputs in;
+    in.now_ns = play.frame++ * frame_ns;
+    in.sight = seen;
+    return play.game.step(in).events;
+  };
+  bool started = false;
+  for (int i = 0; i < 40; ++i)
+    for (const GameEvent& event : look()) started = started || event.kind == EventKind::game_started;
+  EXPECT_TRUE(started);
+  // An illegal position is objected to once, not anew with every flicker.
+  play.table.pieces &= ~square_mask(20, 10);
+  int objections = 0;
+  for (int i = 0; i < 100; ++i)
+    for (const GameEvent& event : look()) objections += event.kind == EventKind::illegal_move;
+  EXPECT_EQ(objections, 1);
+}
+
 TEST(Game, an_illegal_move_is_named_and_put_back) {
   Play play(options_from(), 5);
   reach_real_turn(play);
