@@ -1,10 +1,10 @@
 #include "game_controller/engine/transposition.hpp"
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <bit>
 #include <new>
+
+#include <sys/mman.h>
 
 namespace counterpart {
 namespace {
