@@ -124,7 +124,7 @@ struct Searcher::State {
       threat.turn = other(p.turn);
       const bool threatened = can_capture(*rules, threat);
       if (!threatened || quiet_plies >= max_quiet_plies_in_threats || ply >= max_ply) {
-        if (!threatened && !has_move(*rules, p)) return -win_value + ply;
+        if (!threatened && !has_quiet_move(*rules, p)) return -win_value + ply;
         return rest_value(p, ply);
       }
       generate_quiet(*rules, p, moves);
@@ -243,12 +243,12 @@ struct Searcher::State {
     for (int i = 0; i < moves.size(); ++i) {
       const Move& move = moves[i];
       const Position q = after(*rules, p, move);
-      table.prefetch(key_of(q));
+      const int less = i == 0 ? 0 : reduction(move, depth, i, in_line);
+      if (next_depth - less > 0) table.prefetch(key_of(q));
       int value = 0;
       if (i == 0) {
         value = -search(q, next_depth, -beta, -alpha, ply + 1, rest_line);
       } else {
-        const int less = reduction(move, depth, i, in_line);
         value = -search(q, next_depth - less, -alpha - 1, -alpha, ply + 1, rest_line);
         if (value > alpha && less > 0) value = -search(q, next_depth, -alpha - 1, -alpha, ply + 1, rest_line);
         if (value > alpha && value < beta) value = -search(q, next_depth, -beta, -alpha, ply + 1, rest_line);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <cstdlib>
+#include <memory>
 
 namespace counterpart {
 
@@ -41,7 +43,12 @@ class TranspositionTable {
     std::array<Known, slots> known;
   };
 
-  std::vector<Bucket> buckets_;
+  struct Free {
+    void operator()(Bucket* buckets) const { std::free(buckets); }
+  };
+
+  std::size_t count_ = 0;
+  std::unique_ptr<Bucket[], Free> buckets_;
   std::uint64_t mask_ = 0;
   std::uint8_t age_ = 0;
 };

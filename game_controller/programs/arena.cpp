@@ -142,14 +142,4 @@ Result<void> run_arena(const ArenaOptions& options, std::ostream& out, std::ostr
   return {};
 }
 
-Result<void> run_ladder(const ArenaOptions& options, std::ostream& out, std::ostream& log) {
-  for (int level = lowest_level + 1; level <= highest_level; ++level) {
-    ArenaOptions pair = options;
-    pair.a = "level:" + std::to_string(level);
-    pair.b = "level:" + std::to_string(level - 1);
-    if (auto played = run_arena(pair, out, log); !played) return played;
-  }
-  return {};
-}
-
 }  // namespace counterpart

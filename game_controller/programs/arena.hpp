@@ -15,14 +15,11 @@ struct ArenaOptions {
   int games = 100;
   std::uint64_t nodes = 20'000;
   double move_time_s = 0;  // instead of the nodes, for players that are no level; 0: by nodes
-  int random_plies = 4;  // at the start; each start is played twice with colours swapped
+  int random_plies = 4;    // at the start; each start is played twice with colours swapped
   std::uint64_t seed = 1;
 };
 
 // International rules. One JSON object on `out`: wins, draws, losses and score of a, and how fast both searched.
 [[nodiscard]] Result<void> run_arena(const ArenaOptions& options, std::ostream& out, std::ostream& log);
-
-// Each level against the one below it, a JSON object a pair; `a` and `b` are not looked at.
-[[nodiscard]] Result<void> run_ladder(const ArenaOptions& options, std::ostream& out, std::ostream& log);
 
 }  // namespace counterpart

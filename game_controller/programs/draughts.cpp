@@ -171,8 +171,6 @@ int main(int argc, char** argv) {
   arena_command->add_option("--nodes", arena.nodes, "a move, for players that are no level")->capture_default_str();
   arena_command->add_option("--move-time", arena.move_time_s, "seconds a move instead of nodes")
       ->check(CLI::Range(0.0, 3'600.0));
-  bool ladder = false;
-  arena_command->add_flag("--ladder", ladder, "each level against the one below it");
   arena_command->add_option("--random-plies", arena.random_plies, "before each game")->capture_default_str();
   arena_command->add_option("--seed", arena.seed, "of the openings")->capture_default_str();
 
@@ -226,7 +224,7 @@ int main(int argc, char** argv) {
     return written ? 0 : complain(written.error(), failed);
   }
   if (arena_command->parsed()) {
-    const auto measured = (ladder ? run_ladder : run_arena)(arena, std::cout, std::cerr);
+    const auto measured = run_arena(arena, std::cout, std::cerr);
     return measured ? 0 : complain(measured.error(), wrong_usage);
   }
   if (dxp_command->parsed()) {

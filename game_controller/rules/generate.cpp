@@ -350,10 +350,13 @@ bool can_capture(const Rules& rules, const Position& position) {
   });
 }
 
+bool has_quiet_move(const Rules& rules, const Position& position) {
+  return dispatch(rules, position.turn,
+                  [&]<const Rules & R, Side S>() { return count_quiet<R, S>(view_of<R, S>(position)) > 0; });
+}
+
 bool has_move(const Rules& rules, const Position& position) {
-  return can_capture(rules, position) || dispatch(rules, position.turn, [&]<const Rules & R, Side S>() {
-           return count_quiet<R, S>(view_of<R, S>(position)) > 0;
-         });
+  return can_capture(rules, position) || has_quiet_move(rules, position);
 }
 
 Position after(const Rules& rules, const Position& position, const Move& move) {

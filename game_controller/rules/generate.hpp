@@ -20,6 +20,9 @@ void generate_quiet(const Rules& rules, const Position& position, MoveList& move
 
 bool can_capture(const Rules& rules, const Position& position);
 
+// A move without capture, whether or not a capture would be compulsory.
+bool has_quiet_move(const Rules& rules, const Position& position);
+
 bool has_move(const Rules& rules, const Position& position);
 
 // The position after a move that `generate` gave: a man that ends on the far row is crowned (FMJD Annex 1

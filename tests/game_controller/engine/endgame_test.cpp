@@ -66,6 +66,67 @@ TEST(Endgames, are_the_published_ones_of_english_kings) {
   EXPECT_EQ(count.longest_win_plies, 11);
 }
 
+// Petrov's triangle (A. D. Petrov 1827; P. R. Montero 1591): on the board of 64 squares three kings that hold the main
+// road catch a lone king wherever it stands, in the thirteenth move at the latest; they need not when it holds the
+// road.
+TEST(Endgames, are_petrovs_triangle) {
+  EndgameTables brazilian(brazilian_rules);
+  brazilian.make(three_kings_against_one);
+  Bits main_road = 0;
+  for (const int square : {4, 8, 11, 15, 18, 22, 25, 29}) main_road |= square_mask(square, 8);
+  int longest_plies = 0;
+  int without_road = 0;
+  int without_road_not_won = 0;
+  const auto look_at = [&](const Position& p) {
+    Position passed = p;
+    passed.turn = Side::dark;
+    if (can_capture(brazilian_rules, passed)) return;  // three kings are not three for long
+    const EndgameValue value = brazilian.find(p).value();
+    if ((p.light & main_road) != 0) {
+      ASSERT_EQ(value.outcome, 1) << write_fen(brazilian_rules, p);
+      longest_plies = std::max(longest_plies, value.plies);
+    } else if ((p.dark & main_road) != 0) {
+      ++without_road;
+      without_road_not_won += value.outcome == 1 ? 0 : 1;
+    }
+  };
+  for (int a = 1; a <= 32; ++a) {
+    for (int b = a + 1; b <= 32; ++b) {
+      for (int c = b + 1; c <= 32; ++c) {
+        for (int lone = 1; lone <= 32; ++lone) {
+          if (lone == a || lone == b || lone == c) continue;
+          Position p;
+          p.light = square_mask(a, 8) | square_mask(b, 8) | square_mask(c, 8);
+          p.dark = square_mask(lone, 8);
+          p.kings = p.light | p.dark;
+          look_at(p);
+        }
+      }
+    }
+  }
+  EXPECT_EQ((longest_plies + 1) / 2, 13);
+  EXPECT_GT(without_road_not_won, without_road / 2);
+}
+
+// What the tables foretell is what happens when both sides play by them, within the sixteen moves that the rules allow.
+TEST(Endgames, are_played_out_in_the_foretold_number_of_plies) {
+  Searcher searcher(international_rules, Evaluation::trained, 1 << 20);
+  searcher.use_endgames(&tables());
+  for (const char* fen : {"W:WK1,K7,K18:BK35", "W:WK1,K2:B45", "W:W31:B16"}) {
+    Position p = *read_fen(international_rules, fen);
+    const EndgameValue foretold = value_of(fen);
+    ASSERT_EQ(foretold.outcome, 1) << fen;
+    int plies = 0;
+    SearchLimits limits;
+    limits.depth = 2;
+    for (; has_move(international_rules, p) && plies <= foretold.plies; ++plies) {
+      p = after(international_rules, p, searcher.search(p, {}, limits).line.front());
+    }
+    EXPECT_EQ(plies, foretold.plies) << fen;
+    EXPECT_EQ(p.turn, Side::dark) << fen;
+  }
+}
+
 // Worked out by hand.
 TEST(Endgames, have_the_exact_distance) {
   const struct {
