@@ -30,7 +30,7 @@ using Words = std::vector<std::string>;
 // He walks in, sits down and the first moves of both sides are made; a whole game ends by itself before the second.
 constexpr int kShort = 260, kWhole = 40'000;
 
-const seconds kPatience{scaled(200, 3'000)};
+const seconds kPatience{scaled(400, 4'000)};
 
 std::string bytes_of(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
