@@ -198,7 +198,7 @@ class Lane:
         if time.monotonic() >= self.next_beat:
             self.next_beat += 0.5
             self.write("heartbeat", struct.pack("<IIQ", 0, 0, 0))
-        if time.monotonic() - self.last_heard > 1.5:
+        if time.monotonic() - self.last_heard > 1.4:
             raise ProtocolError("nothing came from the peer for too long")
 
 

@@ -79,6 +79,12 @@ bool SessionReader::sent_by(Role role, const RecordedMessage& recorded) {
       role_ = from_name<Role>(found->second).value_or(Role::observer);
     }
   }
+  if (role == Role::camera && role_ != Role::camera) {
+    // A tracker passes on what its camera gave it.
+    const bool of_camera =
+        std::holds_alternative<VideoFrame>(recorded.message) || std::holds_alternative<Intrinsics>(recorded.message);
+    return of_camera && sent_by(Role::tracker, recorded);
+  }
   if (recorded.incoming == (role_ == role)) return false;
   const auto peer_role = peer_roles_.find(recorded.peer);
   const Role wanted = recorded.incoming ? role : counterpart_of(role);

@@ -31,7 +31,7 @@ class SessionReader {
   std::optional<RecordedMessage> next();
 
   // True for what a program of this role said about the game, the picture and the human: not the link's own messages,
-  // and nothing twice that was sent twice because a link was lost.
+  // and nothing twice that was sent twice because a link was lost. A camera's pictures are in its tracker's capture.
   bool sent_by(Role role, const RecordedMessage& recorded);
 
   std::uint64_t passed_over() const { return passed_over_; }

@@ -243,15 +243,16 @@ Result<Message> read_json(ByteView body) {
 }
 
 template <class T>
-Result<Bytes> encode_json(const T& message) {
+Result<void> encode_json(const T& message, Bytes& out) {
   const nlohmann::json object = to_json(message);
   if (auto good = from_json<T>(object); !good) return tl::make_unexpected(good.error());
   const std::string text = object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  return Bytes(text.begin(), text.end());
+  out.assign(text.begin(), text.end());
+  return {};
 }
 
 template <class T>
-Result<Bytes> encode_fixed(const T& message) {
+Result<void> encode_fixed(const T& message, Bytes& out) {
   if constexpr (std::is_same_v<T, PoseEstimate> || std::is_same_v<T, Mask>) {
     if (!is_sane(message)) return bad(type_of(message), "has numbers out of range");
   } else if constexpr (std::is_same_v<T, VideoFrame>) {
@@ -259,31 +260,37 @@ Result<Bytes> encode_fixed(const T& message) {
       return bad(MessageType::video, "has a size that does not fit its codec");
     }
   }
-  Bytes out;
+  out.clear();
   put(out, message);
-  return out;
+  return {};
 }
 
 }  // namespace
 
-Result<Bytes> encode(const Message& message) {
-  auto body = std::visit(
-      [](const auto& m) -> Result<Bytes> {
+Result<void> encode(const Message& message, Bytes& out) {
+  auto encoded = std::visit(
+      [&out](const auto& m) -> Result<void> {
         if constexpr (is_fixed<std::decay_t<decltype(m)>>) {
-          return encode_fixed(m);
+          return encode_fixed(m, out);
         } else {
-          return encode_json(m);
+          return encode_json(m, out);
         }
       },
       message);
   const MessageType type = type_of(message);
-  if (body && body->size() > max_length(static_cast<std::uint16_t>(type))) {
+  if (encoded && out.size() > max_length(static_cast<std::uint16_t>(type))) {
     return failure(ErrorCode::limit_exceeded, "a " + std::string(name_of(type)) + " message has " +
-                                                  std::to_string(body->size()) + " bytes, more than the " +
+                                                  std::to_string(out.size()) + " bytes, more than the " +
                                                   std::to_string(max_length(static_cast<std::uint16_t>(type))) +
                                                   " permitted");
   }
-  return body;
+  return encoded;
+}
+
+Result<Bytes> encode(const Message& message) {
+  Bytes out;
+  if (auto encoded = encode(message, out); !encoded) return tl::make_unexpected(encoded.error());
+  return out;
 }
 
 bool is_known(std::uint16_t type) {

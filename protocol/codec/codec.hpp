@@ -14,6 +14,9 @@ constexpr std::uint8_t kTypeVersion = 1;
 // Fails on what a receiver would refuse: NaN, values out of range, more than the type's limit.
 [[nodiscard]] Result<Bytes> encode(const Message& message);
 
+// The same, into memory that is there already; what was in it is gone.
+[[nodiscard]] Result<void> encode(const Message& message, Bytes& out);
+
 bool is_known(std::uint16_t type);
 
 // Bodies longer than this version's are read as far as they are known.

@@ -24,6 +24,7 @@ constexpr std::size_t kMostConnections = 64;
 constexpr std::size_t kMostAway = 64;
 constexpr std::size_t kMostUrgent = 256;
 constexpr std::size_t kMostInbound = 16384;
+constexpr std::size_t kLikelyInbound = 256;
 constexpr std::size_t kMostInboundBytes = 64U << 20;
 
 }  // namespace
@@ -286,16 +287,18 @@ std::int64_t Hub::handshake_limit(std::int64_t now_ns) const {
 
 void Hub::tick(ConnectionId id, Connection& connection, std::int64_t now_ns) {
   if (connection.stage == Stage::closing) return;
+  if (connection.paused_until_ns >= 0) connection.last_read_ns = now_ns;  // it is we who do not listen
+  if (now_ns >= connection.paused_until_ns) connection.paused_until_ns = -1;
   if (connection.stage != Stage::open) {
     if (now_ns - connection.opened_ns < handshake_limit(now_ns)) return;
     return fail(id, connection, {ErrorCode::timeout, "the peer did not open the session in time"}, now_ns);
   }
-  if (inbound_full()) connection.last_read_ns = now_ns;  // it is we who do not listen
+  if (inbound_full()) connection.last_read_ns = now_ns;
   if (now_ns - connection.last_read_ns >= options_.dead_after_ns) {
     return fail(id, connection,
                 {ErrorCode::timeout, "nothing came from the peer for too long: it is dead or the link is cut"}, now_ns);
   }
-  if (connection.message_began_ns >= 0 && now_ns - connection.message_began_ns >= kMessageLimit && !inbound_full()) {
+  if (connection.message_began_ns >= 0 && now_ns - connection.message_began_ns >= kMessageLimit && wants_read(id)) {
     return fail(id, connection, {ErrorCode::timeout, "half a message came and the rest did not follow"}, now_ns);
   }
   Peer* peer = peer_of(connection);
@@ -330,6 +333,7 @@ std::int64_t Hub::next_tick(std::int64_t now_ns) const {
   std::int64_t next = now_ns + kSecond;
   const auto sooner = [&](std::int64_t when_ns) { next = std::min(next, std::max(when_ns, now_ns)); };
   for (const auto& [id, connection] : connections_) {
+    if (connection.paused_until_ns >= 0) sooner(connection.paused_until_ns);
     if (connection.stage == Stage::closing) {
       sooner(connection.closing_since_ns + kClosingLimit + 1);
     } else if (connection.stage != Stage::open) {
@@ -386,6 +390,7 @@ void Hub::report(PeerId peer, const Error& error, std::int64_t now_ns) {
 
 std::vector<Inbound> Hub::take_inbound() {
   std::vector<Inbound> taken = std::exchange(inbound_, {});
+  inbound_.reserve(std::min(taken.size(), kLikelyInbound));
   inbound_bytes_ = 0;
   for (auto& [id, peer] : peers_) peer.pictures_waiting = 0;
   return taken;
@@ -397,7 +402,19 @@ bool Hub::inbound_full() const {
 
 bool Hub::wants_read(ConnectionId id) const {
   const auto found = connections_.find(id);
-  return found != connections_.end() && found->second.stage != Stage::closing && !inbound_full();
+  return found != connections_.end() && found->second.stage != Stage::closing && found->second.paused_until_ns < 0 &&
+         !inbound_full();
+}
+
+bool Hub::carries_video(ConnectionId id) const {
+  const auto found = connections_.find(id);
+  return found != connections_.end() && found->second.stage == Stage::open && found->second.lane == LaneName::video;
+}
+
+std::uint64_t Hub::dropped_pictures() const {
+  std::uint64_t dropped = 0;
+  for (const auto& [id, peer] : peers_) dropped += peer.video.dropped();
+  return dropped;
 }
 
 std::vector<PeerStats> Hub::stats(std::int64_t now_ns) const {

@@ -13,6 +13,7 @@
 #include "protocol/framing/frame_parser.hpp"
 #include "protocol/session/clock_sync.hpp"
 #include "protocol/session/lane.hpp"
+#include "protocol/session/rate_limit.hpp"
 #include "protocol/session/token.hpp"
 #include "protocol/transport/endpoint.hpp"
 
@@ -65,6 +66,8 @@ class Hub {
   // It should have been finished by now, but its last words do not go out: close it anyway.
   bool overdue(ConnectionId connection, std::int64_t now_ns) const;
   bool exists(ConnectionId connection) const { return connections_.count(connection) > 0; }
+  bool carries_video(ConnectionId connection) const;
+  std::uint64_t dropped_pictures() const;  // of all peers, by newer ones
   void closed(ConnectionId connection, const Error& why, std::int64_t now_ns);
 
   // Heartbeats, deadlines, clock requests. next_tick: when it should be called at the latest.
@@ -88,6 +91,10 @@ class Hub {
   const std::optional<Error>& last_refusal() const { return last_refusal_; }
 
  private:
+  // Messages of a connection that cost work: texts to parse, questions to answer.
+  static constexpr std::int64_t kMostWorkPerSecond = 5'000;
+  static constexpr std::int64_t kMostWorkAtOnce = 10'000;
+
   enum class Stage { waiting_for_hello, waiting_for_proof, waiting_for_welcome, open, closing };
 
   struct Peer {
@@ -124,6 +131,8 @@ class Hub {
     std::int64_t closing_since_ns = 0;
     std::int64_t acknowledge_by_ns = -1;  // -1: everything is acknowledged
     std::size_t unacknowledged_bytes = 0;
+    RateLimit rate{kMostWorkPerSecond, kMostWorkAtOnce};
+    std::int64_t paused_until_ns = -1;  // what comes too fast is left in the socket; -1: it is read
   };
 
   struct Dial {
@@ -171,6 +180,7 @@ class Hub {
 
   // hub_receive.cpp
   [[nodiscard]] Result<void> on_message(ConnectionId id, Connection& connection, RawMessage& raw, std::int64_t now_ns);
+  static void count_work(Connection& connection, MessageType type, std::int64_t now_ns);
   void acknowledge_soon(Connection& connection, std::size_t bytes, std::int64_t now_ns);
   [[nodiscard]] Result<void> on_open_message(ConnectionId id, Connection& connection, const Header& header,
                                              Message&& message, std::int64_t now_ns);

@@ -51,6 +51,12 @@ void Hub::acknowledge_soon(Connection& connection, std::size_t bytes, std::int64
   if (connection.unacknowledged_bytes >= kMostUnacknowledgedBytes) connection.acknowledge_by_ns = now_ns;
 }
 
+void Hub::count_work(Connection& connection, MessageType type, std::int64_t now_ns) {
+  if (!is_json(type) && type != MessageType::clock_request) return;
+  const std::int64_t pause_until_ns = connection.rate.count(now_ns);
+  if (pause_until_ns > now_ns) connection.paused_until_ns = pause_until_ns;
+}
+
 Result<void> Hub::on_message(ConnectionId id, Connection& connection, RawMessage& raw, std::int64_t now_ns) {
   if (tap_ != nullptr) {
     tap_->saw(true, connection.lane == LaneName::video, connection.peer, raw.header_bytes, raw.body, now_ns);
@@ -75,6 +81,7 @@ Result<void> Hub::on_message(ConnectionId id, Connection& connection, RawMessage
     return {};
   }
   const auto type = static_cast<MessageType>(raw.header.type);
+  count_work(connection, type, now_ns);
   auto message = open ? decode(type, std::move(raw.body)) : decode(type, raw.body);
   if (!message) {
     if (open) end_session(*peer, message.error(), now_ns);

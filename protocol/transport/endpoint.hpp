@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -77,12 +78,14 @@ struct LinkOptions {
   Role role = Role::observer;
   std::string software;  // "vhd_renderer 0.1.0"
   bool lockstep = false;
-  std::string token_file;                         // needed for a listening address other than loopback
-  PixelCodec video_codec = PixelCodec::raw_bgr8;  // raw frames are turned into this before they are sent
+  std::string token_file;  // needed for a listening address other than loopback
+  // Raw pictures are turned into this before they are sent. Empty: raw on loopback, between hosts what the links carry
+  // (transport/video_choice.hpp).
+  std::optional<PixelCodec> video_codec;
   bool want_video = true;
   std::int64_t heartbeat_ns = 500'000'000;
-  std::int64_t dead_after_ns = 1'500'000'000;
-  std::string record_file;  // every message and the exact bytes, as MCAP; empty: no capture
+  std::int64_t dead_after_ns = 1'400'000'000;  // noticed within 1.5 s also by a busy machine
+  std::string record_file;                     // every message and the exact bytes, as MCAP; empty: no capture
 };
 
 // address: "HOST:PORT"; port 0 takes a free one (see Endpoint::address).

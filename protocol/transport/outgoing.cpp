@@ -1,29 +1,30 @@
 #include "protocol/transport/outgoing.hpp"
 
+#include <utility>
+
 #include "protocol/codec/codec.hpp"
 #include "protocol/transport/jpeg.hpp"
 
 namespace counterpart {
 namespace {
 
-Result<Bytes> body_of(const Message& message, PixelCodec codec) {
+Result<void> write_body(const Message& message, PixelCodec codec, Bytes& out) {
   const auto* video = std::get_if<VideoFrame>(&message);
-  if (video == nullptr || video->codec == codec || codec == PixelCodec::raw_bgr8) return encode(message);
+  if (video == nullptr || video->codec == codec || codec == PixelCodec::raw_bgr8) return encode(message, out);
   auto compressed = convert(*video, codec);
   if (!compressed) return tl::make_unexpected(compressed.error());
-  return encode(*compressed);
+  return encode(*compressed, out);
 }
 
 }  // namespace
 
-Result<Outgoing> make_outgoing(const Message& message, PixelCodec codec) {
-  auto body = body_of(message, codec);
-  if (!body) return tl::make_unexpected(body.error());
+Result<Outgoing> make_outgoing(const Message& message, PixelCodec codec, std::shared_ptr<Bytes> memory) {
+  if (auto written = write_body(message, codec, *memory); !written) return tl::make_unexpected(written.error());
   Outgoing outgoing;
   outgoing.type = type_of(message);
   outgoing.frame_id = frame_of(message);
   if (const auto* pose = std::get_if<PoseEstimate>(&message)) outgoing.object = pose->object_id;
-  outgoing.body = std::make_shared<const Bytes>(std::move(*body));
+  outgoing.body = std::move(memory);
   return outgoing;
 }
 

@@ -1,22 +1,25 @@
-#include <cerrno>
 #include <chrono>
 #include <condition_variable>
+#include <limits>
+#include <map>
 #include <mutex>
 #include <thread>
 
 #include <boost/asio.hpp>
-#include <poll.h>
-#include <sys/eventfd.h>
-#include <sys/socket.h>
-#include <sys/uio.h>
-#include <unistd.h>
 
 #include "protocol/capture/recorder.hpp"
 #include "protocol/session/hub.hpp"
 #include "protocol/transport/address.hpp"
+#include "protocol/transport/body_pool.hpp"
+#include "protocol/transport/delivery_rate.hpp"
 #include "protocol/transport/endpoint.hpp"
 #include "protocol/transport/monotonic_clock.hpp"
+#include "protocol/transport/network_error.hpp"
 #include "protocol/transport/outgoing.hpp"
+#include "protocol/transport/socket_set.hpp"
+#include "protocol/transport/tcp_connect.hpp"
+#include "protocol/transport/tcp_link.hpp"
+#include "protocol/transport/video_choice.hpp"
 
 namespace counterpart {
 namespace {
@@ -26,82 +29,31 @@ using asio::ip::tcp;
 using boost::system::error_code;
 
 constexpr auto kGoodbyeLimit = std::chrono::milliseconds(300);
-constexpr std::size_t kMostAtOnce = 32;   // messages in one write
-constexpr std::size_t kSmallBody = 1024;  // is cheaper to copy than to name
-constexpr std::size_t kMostBytesAtOnce = 256U << 10;
-constexpr int kMostReadsInARow = 64;
+constexpr std::size_t kPosesReused = 4096;  // whose memory is used again
+constexpr std::size_t kPicturesReused = 4;
 constexpr std::int64_t kLease = 2'000'000;
 constexpr std::int64_t kLongestPatience = 1'000'000'000'000'000;  // eleven days; more would not fit
 
-error_code last_error() {
-  return {errno, boost::system::system_category()};
-}
+// A link is in Asio's event loop only while the endpoint's own thread has to wait for it: a socket that is in the loop
+// wakes that thread with every message, whoever reads it.
+struct Watch {
+  Watch(asio::io_context& io, int connected, ConnectionId id, bool to_this_host)
+      : link(connected, id), local(to_this_host), descriptor(io) {}
+  ~Watch() { stop(); }
+  Watch(const Watch&) = delete;
+  Watch& operator=(const Watch&) = delete;
 
-Error network_error(const error_code& error, const std::string& address) {
-  if (error == asio::error::connection_refused) {
-    return {ErrorCode::unavailable, "nothing listens at " + address +
-                                        " (connection refused): start the other program first, or check the port"};
-  }
-  if (error == asio::error::eof || error == asio::error::connection_reset || error == asio::error::broken_pipe) {
-    return {ErrorCode::closed, "the peer closed the connection"};
-  }
-  return {ErrorCode::io, address + ": " + error.message()};
-}
-
-// Ends a poll from another thread.
-class WakeUp {
- public:
-  WakeUp() : file_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
-  ~WakeUp() { ::close(file_); }
-  WakeUp(const WakeUp&) = delete;
-  WakeUp& operator=(const WakeUp&) = delete;
-
-  int get() const { return file_; }
-  void set() const { static_cast<void>(::eventfd_write(file_, 1)); }
-  void clear() const {
-    eventfd_t ignored = 0;
-    static_cast<void>(::eventfd_read(file_, &ignored));
-  }
-
- private:
-  int file_;
-};
-
-// A connected socket. It is in Asio's event loop only while the endpoint's own thread has to wait for it: a socket that
-// is in the loop wakes that thread with every message, whoever reads it.
-struct Link {
-  Link(asio::io_context& io, int connected, ConnectionId its_id) : socket(connected), id(its_id), watch(io) {}
-  ~Link() {
-    stop_watching();
-    close();
-  }
-  Link(const Link&) = delete;
-  Link& operator=(const Link&) = delete;
-
-  void stop_watching() {
-    if (watch.is_open()) watch.release();
+  void stop() {
+    if (descriptor.is_open()) descriptor.release();
     ++round;
-    waiting_to_read = waiting_to_write = false;
+    reading = writing = false;
   }
 
-  void close() {
-    if (socket < 0) return;
-    ::shutdown(socket, SHUT_RDWR);
-    ::close(std::exchange(socket, -1));
-  }
-
-  int socket;
-  ConnectionId id;
-  // The write in progress: headers and small bodies behind each other in `staging`, large bodies where they are.
-  std::vector<WireMessage> writing;
-  Bytes staging;
-  std::vector<iovec> buffers;  // what is left to write
-  bool blocked = false;        // the socket takes no more for now
-  error_code broken;
-  asio::posix::stream_descriptor watch;
+  TcpLink link;
+  bool local;  // the peer is on this host
+  asio::posix::stream_descriptor descriptor;
   std::uint64_t round = 0;  // waits of an earlier round no longer count
-  bool waiting_to_read = false;
-  bool waiting_to_write = false;
+  bool reading = false, writing = false;
 };
 
 // Sockets are touched only with the mutex held; handlers run on the endpoint's own thread.
@@ -112,7 +64,6 @@ class TcpEndpoint : public Endpoint {
         recorder_(std::move(recorder)),
         hub_(end, options, std::move(token), recorder_.get()),
         acceptor_(io_),
-        resolver_(io_),
         timer_(io_),
         lease_timer_(io_),
         work_(asio::make_work_guard(io_)) {}
@@ -123,41 +74,22 @@ class TcpEndpoint : public Endpoint {
       leaving_ = true;
       error_code ignored;
       acceptor_.close(ignored);
-      resolver_.cancel();
       hub_.leave(monotonic_ns());
       after_change();
       changed_.wait_for(lock, kGoodbyeLimit, [&] { return links_.empty(); });
     }
     io_.stop();
     if (thread_.joinable()) thread_.join();
-    for (const auto& [id, link] : links_) link->stop_watching();
+    for (const auto& [id, watched] : links_) watched->stop();
   }
 
   TcpEndpoint(const TcpEndpoint&) = delete;
   TcpEndpoint& operator=(const TcpEndpoint&) = delete;
 
   Result<void> listen(const HostPort& address, bool has_token) {
-    error_code error;
-    const auto found = resolver_.resolve(address.host, std::to_string(address.port), error);
-    if (error || found.empty()) {
-      return failure(ErrorCode::not_found, "the host \"" + address.host + "\" is not known: " + error.message());
-    }
-    const tcp::endpoint where = found.begin()->endpoint();
-    if (!where.address().is_loopback() && !has_token) {
-      return failure(ErrorCode::refused, to_text(address) +
-                                             " can be reached from other hosts: give a token file (--token-file), or "
-                                             "listen on 127.0.0.1");
-    }
-    acceptor_.open(where.protocol(), error);
-    if (!error) acceptor_.set_option(tcp::acceptor::reuse_address(true), error);
-    if (!error) acceptor_.bind(where, error);
-    if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
-    if (error == asio::error::address_in_use) {
-      return failure(ErrorCode::unavailable, to_text(address) +
-                                                 " is in use: another program listens there; stop it or choose another "
-                                                 "port with --listen");
-    }
-    if (error) return failure(ErrorCode::io, "cannot listen on " + to_text(address) + ": " + error.message());
+    auto acceptor = open_acceptor(io_, address, has_token);
+    if (!acceptor) return tl::make_unexpected(acceptor.error());
+    acceptor_ = std::move(*acceptor);
     const tcp::endpoint bound = acceptor_.local_endpoint();
     address_ = {bound.address().to_string(), bound.port()};
     accept();
@@ -192,7 +124,7 @@ class TcpEndpoint : public Endpoint {
   }
 
   void send(PeerId peer, const Message& message) override {
-    auto outgoing = make_outgoing(message, options_.video_codec);
+    auto outgoing = make_outgoing(message, codec_for(message), memory_for(message));
     const std::lock_guard lock(mutex_);
     if (!outgoing) return refuse(peer, outgoing.error());
     const std::int64_t now_ns = monotonic_ns();
@@ -201,7 +133,7 @@ class TcpEndpoint : public Endpoint {
   }
 
   void broadcast(const Message& message) override {
-    auto outgoing = make_outgoing(message, options_.video_codec);
+    auto outgoing = make_outgoing(message, codec_for(message), memory_for(message));
     const std::lock_guard lock(mutex_);
     if (!outgoing) return refuse(0, outgoing.error());
     const std::int64_t now_ns = monotonic_ns();
@@ -218,6 +150,7 @@ class TcpEndpoint : public Endpoint {
       if (left <= 0) break;
       read_in_place(lock, left);
     }
+    if (timeout_ns > 0) take_lease();
     auto taken = hub_.take_inbound();
     if (!leased()) wait_for_all();  // it may have been too full to read on
     return taken;
@@ -236,7 +169,35 @@ class TcpEndpoint : public Endpoint {
     after_change();
   }
 
+  std::shared_ptr<Bytes> memory_for(const Message& message) {
+    const std::lock_guard lock(mutex_);
+    if (std::holds_alternative<PoseEstimate>(message)) return poses_.take();
+    if (std::holds_alternative<VideoFrame>(message)) return pictures_.take();
+    return std::make_shared<Bytes>();
+  }
+
+  PixelCodec codec_for(const Message& message) {
+    const auto* picture = std::get_if<VideoFrame>(&message);
+    if (options_.video_codec || picture == nullptr) return options_.video_codec.value_or(PixelCodec::raw_bgr8);
+    const std::lock_guard lock(mutex_);
+    VideoLinks links = video_links();
+    if (options_.lockstep) links.slowest_bytes_per_second = 0;  // two runs must give the same bytes
+    return video_choice_.choose(picture->bytes.size(), links, monotonic_ns());
+  }
+
   // --- everything below is called with the mutex held ---
+
+  VideoLinks video_links() const {
+    VideoLinks all;
+    all.dropped = hub_.dropped_pictures();
+    all.slowest_bytes_per_second = std::numeric_limits<double>::max();
+    for (const auto& [id, watched] : links_) {
+      if (!hub_.carries_video(id)) continue;
+      all.all_local = all.all_local && watched->local;
+      all.slowest_bytes_per_second = std::min(all.slowest_bytes_per_second, delivery_rate(watched->link.socket()));
+    }
+    return all;
+  }
 
   void accept() {
     acceptor_.async_accept([this](const error_code& error, tcp::socket socket) {
@@ -271,57 +232,33 @@ class TcpEndpoint : public Endpoint {
   void add_link(tcp::socket socket, ConnectionId id) {
     error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
-    links_[id] = std::make_shared<Link>(io_, socket.release(ignored), id);
+    const bool local = socket.remote_endpoint(ignored).address().is_loopback();
+    links_[id] = std::make_shared<Watch>(io_, socket.release(ignored), id, local);
     ++link_changes_;
     after_change();
   }
 
   void dial(Hub::LaneName lane) {
-    struct Attempt {
-      explicit Attempt(asio::io_context& io) : socket(io), limit(io) {}
-      tcp::socket socket;
-      asio::steady_timer limit;
-      bool done = false;
-    };
-    const auto attempt = std::make_shared<Attempt>(io_);
-    const auto finish = [this, attempt, lane](const error_code& error) {
-      if (attempt->done || leaving_) return;
-      attempt->done = true;
-      attempt->limit.cancel();
-      if (error) {
-        hub_.dial_failed(lane, network_error(error, to_text(address_)), monotonic_ns());
-      } else {
-        add_link(std::move(attempt->socket), hub_.dialled(lane, monotonic_ns()));
-      }
-      after_change();
-    };
-    attempt->limit.expires_after(std::chrono::nanoseconds(hub_.dial_limit(monotonic_ns())));
-    attempt->limit.async_wait([this, attempt, finish](const error_code& cancelled) {
-      if (cancelled) return;
-      const std::lock_guard lock(mutex_);
-      finish(asio::error::timed_out);
-      error_code ignored;
-      attempt->socket.close(ignored);
-    });
-    resolver_.async_resolve(address_.host, std::to_string(address_.port),
-                            [this, attempt, finish](const error_code& error, const tcp::resolver::results_type& found) {
-                              const std::lock_guard lock(mutex_);
-                              if (error || attempt->done)
-                                return finish(error ? error : error_code(asio::error::timed_out));
-                              asio::async_connect(attempt->socket, found,
-                                                  [this, finish](const error_code& failed, const tcp::endpoint&) {
-                                                    const std::lock_guard inner(mutex_);
-                                                    finish(failed);
-                                                  });
-                            });
+    connect_socket(io_, address_, hub_.dial_limit(monotonic_ns()),
+                   [this, lane](const error_code& error, tcp::socket socket) {
+                     const std::lock_guard lock(mutex_);
+                     if (leaving_) return;
+                     if (error) {
+                       hub_.dial_failed(lane, network_error(error, to_text(address_)), monotonic_ns());
+                       after_change();
+                     } else {
+                       add_link(std::move(socket), hub_.dialled(lane, monotonic_ns()));
+                     }
+                   });
   }
 
   void after_send(std::int64_t now_ns) {
     bool over = hub_.has_inbound();
-    for (const auto& [id, link] : links_) {
-      flush(*link, now_ns);
-      if (link->blocked) watch(link);
-      over = over || link->broken || hub_.finished(id);
+    for (const auto& [id, watched] : links_) {
+      TcpLink& link = watched->link;
+      link.flush(hub_, now_ns);
+      if (link.blocked()) watch(watched);
+      over = over || link.broken() || hub_.finished(id);
     }
     if (over) after_change();
   }
@@ -334,31 +271,30 @@ class TcpEndpoint : public Endpoint {
   bool leased() const { return !leaving_ && (polling_ || monotonic_ns() < lease_ns_); }
 
   void read_in_place(std::unique_lock<std::mutex>& lock, std::int64_t timeout_ns) {
-    polled_.assign(1, {wake_.get(), POLLIN, 0});
-    polled_links_.assign(1, nullptr);
-    for (const auto& [id, link] : links_) {
-      link->stop_watching();
-      const int wanted = (hub_.wants_read(id) ? POLLIN : 0) | (link->blocked ? POLLOUT : 0);
-      if (link->broken || wanted == 0) continue;
-      polled_.push_back({link->socket, static_cast<short>(wanted), 0});
-      polled_links_.push_back(link);
+    for (const auto& [id, watched] : links_) {
+      TcpLink& link = watched->link;
+      watched->stop();
+      sockets_.want(link.socket(), id, !link.broken() && hub_.wants_read(id), link.blocked(), link.waited_for);
     }
     polling_ = true;
     lock.unlock();
-    const timespec limit{timeout_ns / 1'000'000'000, timeout_ns % 1'000'000'000};
-    const int ready = ::ppoll(polled_.data(), polled_.size(), &limit, nullptr);
+    const auto ready = sockets_.wait(timeout_ns);
     lock.lock();
     polling_ = false;
+    take_lease();
+    for (const SocketSet::Ready& one : ready) {
+      const auto found = links_.find(one.id);
+      if (found == links_.end()) continue;
+      TcpLink& link = found->second->link;
+      if (one.write) link.unblock();
+      if (one.read) link.read(hub_);
+    }
+    if (!ready.empty()) after_change();
+  }
+
+  void take_lease() {
     lease_ns_ = monotonic_ns() + kLease;
     end_lease_later();
-    if (ready <= 0) return;
-    if (polled_[0].revents != 0) wake_.clear();
-    for (std::size_t i = 1; i < polled_.size(); ++i) {
-      const std::shared_ptr<Link>& link = polled_links_[i];
-      if ((polled_[i].revents & POLLOUT) != 0) link->blocked = false;
-      if ((polled_[i].revents & ~POLLOUT) != 0 && links_.count(link->id) > 0 && !link->broken) read(*link);
-    }
-    after_change();
   }
 
   void end_lease_later() {
@@ -377,25 +313,25 @@ class TcpEndpoint : public Endpoint {
 
   // Whatever happened: write what can be written, read what may be read, close what is over, set the alarm clock.
   void after_change() {
-    if (!leaving_) {
-      while (const auto lane = hub_.wants_to_dial(monotonic_ns())) dial(*lane);
-    }
     const std::int64_t now_ns = monotonic_ns();
-    std::vector<std::shared_ptr<Link>> over;
-    for (const auto& [id, link] : links_) {
-      flush(*link, now_ns);
-      watch(link);
-      if (is_over(*link, now_ns)) over.push_back(link);
+    if (!leaving_) {
+      while (const auto lane = hub_.wants_to_dial(now_ns)) dial(*lane);
     }
-    for (const auto& link : over) reap(*link, now_ns);
+    std::vector<ConnectionId> over;
+    for (const auto& [id, watched] : links_) {
+      watched->link.flush(hub_, now_ns);
+      watch(watched);
+      if (is_over(watched->link, now_ns)) over.push_back(id);
+    }
+    for (const ConnectionId id : over) reap(id, now_ns);
     set_alarm(now_ns);
     if (hub_.has_inbound() || links_.empty()) changed_.notify_all();
-    if (polling_ && (hub_.has_inbound() || link_changes_ != link_changes_seen_)) wake_.set();
+    if (polling_ && (hub_.has_inbound() || link_changes_ != link_changes_seen_)) sockets_.ring();
     link_changes_seen_ = link_changes_;
   }
 
   void wait_for_all() {
-    for (const auto& [id, link] : links_) watch(link);
+    for (const auto& [id, watched] : links_) watch(watched);
   }
 
   void set_alarm(std::int64_t now_ns) {
@@ -417,132 +353,56 @@ class TcpEndpoint : public Endpoint {
   }
 
   // Has the endpoint's thread wait for what this link waits for, unless the program's thread does.
-  void watch(const std::shared_ptr<Link>& link) {
-    if (link->broken) return;
+  void watch(const std::shared_ptr<Watch>& watched) {
+    const TcpLink& link = watched->link;
+    if (link.broken()) return;
     if (polling_) {
-      if (link->blocked) wake_.set();
+      const bool again = (link.waited_for & EPOLLIN) == 0 && hub_.wants_read(link.id());
+      if (link.blocked() || again) sockets_.ring();
       return;
     }
-    if (link->blocked && !link->waiting_to_write) wait_to_write(link);
-    if (!link->waiting_to_read && !leased() && hub_.wants_read(link->id)) wait_to_read(link);
+    if (link.blocked() && !watched->writing) wait_to_write(watched);
+    if (!watched->reading && !leased() && hub_.wants_read(link.id())) wait_to_read(watched);
   }
 
-  void wait_to_read(const std::shared_ptr<Link>& link) {
-    link->waiting_to_read = true;
-    if (!link->watch.is_open()) link->watch.assign(link->socket);
-    link->watch.async_wait(asio::posix::stream_descriptor::wait_read,
-                           [this, link, round = link->round](const error_code& error) {
-                             const std::lock_guard lock(mutex_);
-                             if (error || round != link->round) return;
-                             link->waiting_to_read = false;
-                             if (!leased()) read(*link);
-                             after_change();
-                           });
+  void wait_to_read(const std::shared_ptr<Watch>& watched) {
+    watched->reading = true;
+    if (!watched->descriptor.is_open()) watched->descriptor.assign(watched->link.socket());
+    watched->descriptor.async_wait(asio::posix::stream_descriptor::wait_read,
+                                   [this, watched, round = watched->round](const error_code& error) {
+                                     const std::lock_guard lock(mutex_);
+                                     if (error || round != watched->round) return;
+                                     watched->reading = false;
+                                     if (!leased()) watched->link.read(hub_);
+                                     after_change();
+                                   });
   }
 
-  void wait_to_write(const std::shared_ptr<Link>& link) {
-    link->waiting_to_write = true;
-    if (!link->watch.is_open()) link->watch.assign(link->socket);
-    link->watch.async_wait(asio::posix::stream_descriptor::wait_write,
-                           [this, link, round = link->round](const error_code& error) {
-                             const std::lock_guard lock(mutex_);
-                             if (error || round != link->round) return;
-                             link->waiting_to_write = link->blocked = false;
-                             after_change();
-                           });
-  }
-
-  void read(Link& link) {
-    for (int i = 0; i < kMostReadsInARow && !link.broken && hub_.wants_read(link.id); ++i) {
-      const auto room = hub_.parser(link.id).room();
-      const ssize_t count = ::recv(link.socket, room.data(), room.size(), MSG_DONTWAIT);
-      if (count == 0) link.broken = asio::error::eof;
-      if (count < 0 && errno != EAGAIN && errno != EINTR) link.broken = last_error();
-      if (count <= 0) return;
-      hub_.read(link.id, static_cast<std::size_t>(count), monotonic_ns());
-      if (static_cast<std::size_t>(count) < room.size()) return;  // the socket is empty
-    }
-  }
-
-  void flush(Link& link, std::int64_t now_ns) {
-    while (!link.blocked && !link.broken) {
-      if (link.buffers.empty() && !gather(link, now_ns)) return;
-      const ssize_t count = write_some(link);
-      if (count >= 0) {
-        consume(link, static_cast<std::size_t>(count));
-      } else if (errno == EAGAIN) {
-        link.blocked = true;
-      } else if (errno != EINTR) {
-        link.broken = last_error();
-      }
-    }
-  }
-
-  static ssize_t write_some(Link& link) {
-    constexpr int kFlags = MSG_DONTWAIT | MSG_NOSIGNAL;
-    if (link.buffers.size() == 1) {
-      return ::send(link.socket, link.buffers[0].iov_base, link.buffers[0].iov_len, kFlags);
-    }
-    msghdr message{};
-    message.msg_iov = link.buffers.data();
-    message.msg_iovlen = link.buffers.size();
-    return ::sendmsg(link.socket, &message, kFlags);
-  }
-
-  bool gather(Link& link, std::int64_t now_ns) {
-    link.writing.clear();
-    link.staging.clear();
-    link.staging.reserve(kMostAtOnce * (kHeaderSize + kSmallBody));  // so that it stays where it is
-    std::size_t bytes = 0;
-    for (std::size_t count = 0; count < kMostAtOnce && bytes < kMostBytesAtOnce; ++count) {
-      auto message = hub_.next_to_write(link.id, now_ns);
-      if (!message) break;
-      bytes += kHeaderSize + message->body->size();
-      stage(link, message->header);
-      if (message->body->size() <= kSmallBody) {
-        stage(link, *message->body);
-      } else {
-        // sendmsg only reads, but its type does not say so.
-        link.buffers.push_back({const_cast<std::uint8_t*>(message->body->data()), message->body->size()});
-        link.writing.push_back(std::move(*message));
-      }
-    }
-    return !link.buffers.empty();
-  }
-
-  // Into the buffer before, if that is the end of what is staged.
-  static void stage(Link& link, ByteView bytes) {
-    std::uint8_t* const end = link.staging.data() + link.staging.size();
-    link.staging.insert(link.staging.end(), bytes.begin(), bytes.end());
-    const bool goes_on = !link.buffers.empty() &&
-                         static_cast<std::uint8_t*>(link.buffers.back().iov_base) + link.buffers.back().iov_len == end;
-    if (goes_on) {
-      link.buffers.back().iov_len += bytes.size();
-    } else {
-      link.buffers.push_back({end, bytes.size()});
-    }
-  }
-
-  static void consume(Link& link, std::size_t count) {
-    std::size_t whole = 0;
-    while (whole < link.buffers.size() && count >= link.buffers[whole].iov_len) count -= link.buffers[whole++].iov_len;
-    link.buffers.erase(link.buffers.begin(), link.buffers.begin() + static_cast<std::ptrdiff_t>(whole));
-    if (count == 0) return;
-    link.buffers.front().iov_base = static_cast<char*>(link.buffers.front().iov_base) + count;
-    link.buffers.front().iov_len -= count;
+  void wait_to_write(const std::shared_ptr<Watch>& watched) {
+    watched->writing = true;
+    if (!watched->descriptor.is_open()) watched->descriptor.assign(watched->link.socket());
+    watched->descriptor.async_wait(asio::posix::stream_descriptor::wait_write,
+                                   [this, watched, round = watched->round](const error_code& error) {
+                                     const std::lock_guard lock(mutex_);
+                                     if (error || round != watched->round) return;
+                                     watched->writing = false;
+                                     watched->link.unblock();
+                                     after_change();
+                                   });
   }
 
   // Broken, or it has said all.
-  bool is_over(const Link& link, std::int64_t now_ns) const {
-    return link.broken || (hub_.finished(link.id) && link.buffers.empty()) || hub_.overdue(link.id, now_ns);
+  bool is_over(const TcpLink& link, std::int64_t now_ns) const {
+    return link.broken() || (hub_.finished(link.id()) && !link.writing()) || hub_.overdue(link.id(), now_ns);
   }
 
-  void reap(Link& link, std::int64_t now_ns) {
-    if (!link.broken) link.broken = asio::error::eof;
-    link.stop_watching();
-    link.close();
-    hub_.closed(link.id, network_error(link.broken, to_text(address_)), now_ns);
-    links_.erase(link.id);
+  void reap(ConnectionId id, std::int64_t now_ns) {
+    Watch& watched = *links_.at(id);
+    const error_code why = watched.link.broken() ? watched.link.broken() : error_code(asio::error::eof);
+    watched.stop();
+    watched.link.close();
+    hub_.closed(id, network_error(why, to_text(address_)), now_ns);
+    links_.erase(id);
     ++link_changes_;
   }
 
@@ -551,12 +411,12 @@ class TcpEndpoint : public Endpoint {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   Hub hub_;
+  VideoChoice video_choice_;
+  BodyPool poses_{kPosesReused}, pictures_{kPicturesReused};
   HostPort address_;
   bool leaving_ = false;
-  WakeUp wake_;
-  bool polling_ = false;  // the program's thread waits on the sockets
-  std::vector<pollfd> polled_;
-  std::vector<std::shared_ptr<Link>> polled_links_;
+  SocketSet sockets_;
+  bool polling_ = false;       // the program's thread waits on the sockets
   bool lease_ending_ = false;  // lease_timer_ runs
   std::int64_t lease_ns_ = 0;
   std::uint64_t link_changes_ = 0, link_changes_seen_ = 0;  // links that came or went
@@ -564,10 +424,9 @@ class TcpEndpoint : public Endpoint {
   std::int64_t alarm_ns_ = 0;
   asio::io_context io_;
   tcp::acceptor acceptor_;
-  tcp::resolver resolver_;
   asio::steady_timer timer_, lease_timer_;
   asio::executor_work_guard<asio::io_context::executor_type> work_;
-  std::map<ConnectionId, std::shared_ptr<Link>> links_;
+  std::map<ConnectionId, std::shared_ptr<Watch>> links_;
   std::thread thread_;
 };
 

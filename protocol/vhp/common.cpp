@@ -1,25 +1,8 @@
 #include "protocol/vhp/common.hpp"
 
-#include <csignal>
 #include <iostream>
 
 namespace counterpart::vhp {
-namespace {
-
-volatile std::sig_atomic_t g_interrupted = 0;
-
-}  // namespace
-
-void catch_interrupts() {
-  const auto handler = [](int) { g_interrupted = 1; };
-  std::signal(SIGINT, handler);
-  std::signal(SIGTERM, handler);
-  std::signal(SIGPIPE, SIG_IGN);
-}
-
-bool interrupted() {
-  return g_interrupted != 0;
-}
 
 int fail(const Error& error) {
   std::cerr << "vhp: " << error.message << '\n';

@@ -21,10 +21,6 @@ struct LinkArguments {
   double patience_s = 3;  // how long to wait for the peer
 };
 
-// Ctrl-C and SIGTERM set a flag instead of killing the program.
-void catch_interrupts();
-bool interrupted();
-
 // Writes "vhp: ..." to stderr; returns kFailed, or kWrongUsage for what cannot be meant.
 int fail(const Error& error);
 

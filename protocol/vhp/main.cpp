@@ -1,6 +1,9 @@
 // vhp: watches, scripts, records and replays the protocol between tracker and renderer.
+#include <csignal>
+
 #include <CLI/CLI.hpp>
 
+#include "protocol/daemon/stop_signal.hpp"
 #include "protocol/vhp/commands.hpp"
 #include "protocol/vhp/common.hpp"
 
@@ -18,7 +21,8 @@ int main(int argc, char** argv) {
   add_capture(app, exit_code);
   add_export(app, exit_code);
   add_completion(app, exit_code);
-  catch_interrupts();
+  counterpart::catch_stop_signals();
+  std::signal(SIGPIPE, SIG_IGN);  // a reader of our output that has gone is seen by the write
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -8,6 +8,7 @@
 
 #include "protocol/codec/json.hpp"
 #include "protocol/codec/names.hpp"
+#include "protocol/daemon/stop_signal.hpp"
 #include "protocol/transport/monotonic_clock.hpp"
 #include "protocol/vhp/commands.hpp"
 #include "protocol/vhp/common.hpp"
@@ -127,7 +128,7 @@ int run_monitor(const MonitorArguments& arguments) {
   const std::int64_t start = monotonic_ns();
   std::int64_t last = start;
   Picture picture;
-  while (!interrupted() && std::cout.good()) {
+  while (!stop_requested() && std::cout.good()) {
     for (const Inbound& inbound : (*endpoint)->receive(kSecond / 20)) note(picture, inbound);
     const std::int64_t time = monotonic_ns();
     const bool end = arguments.seconds > 0 && static_cast<double>(time - start) >= arguments.seconds * 1e9;

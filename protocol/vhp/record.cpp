@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "protocol/daemon/stop_signal.hpp"
 #include "protocol/transport/monotonic_clock.hpp"
 #include "protocol/vhp/commands.hpp"
 #include "protocol/vhp/common.hpp"
@@ -24,7 +25,7 @@ int run_record(const RecordArguments& arguments) {
   std::cerr << "recording " << (*endpoint)->address() << " into " << arguments.file << "; Ctrl-C ends it\n";
   const std::int64_t start = monotonic_ns();
   std::uint64_t messages = 0;
-  while (!interrupted()) {
+  while (!stop_requested()) {
     if (arguments.seconds > 0 && static_cast<double>(monotonic_ns() - start) >= arguments.seconds * 1e9) break;
     for (const Inbound& inbound : (*endpoint)->receive(100'000'000)) {
       if (const auto* left = std::get_if<PeerLeft>(&inbound)) std::cerr << "away: " << left->reason.message << '\n';

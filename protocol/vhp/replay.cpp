@@ -7,6 +7,7 @@
 
 #include "protocol/capture/session_reader.hpp"
 #include "protocol/codec/names.hpp"
+#include "protocol/daemon/stop_signal.hpp"
 #include "protocol/transport/monotonic_clock.hpp"
 #include "protocol/vhp/commands.hpp"
 #include "protocol/vhp/common.hpp"
@@ -61,7 +62,7 @@ class LivePeer {
   bool wait(double seconds, Condition condition) {
     const std::int64_t until = monotonic_ns() + static_cast<std::int64_t>(seconds * 1e9);
     while (!condition()) {
-      if (interrupted() || monotonic_ns() >= until) return false;
+      if (stop_requested() || monotonic_ns() >= until) return false;
       listen(20'000'000);
     }
     return true;
@@ -81,14 +82,14 @@ class LivePeer {
 void wait_until(LivePeer& peer, std::int64_t when_ns) {
   do {
     peer.listen(std::clamp<std::int64_t>(when_ns - monotonic_ns(), 0, 20'000'000));
-  } while (!interrupted() && monotonic_ns() < when_ns);
+  } while (!stop_requested() && monotonic_ns() < when_ns);
 }
 
 int play(const ReplayArguments& arguments, SessionReader& reader, Endpoint& endpoint, LivePeer& peer, Role role) {
   std::optional<FrameId> gate;  // how far the other side was when this was said
   std::uint64_t sent = 0;
   std::int64_t capture_start = 0, start = 0;
-  while (!interrupted()) {
+  while (!stop_requested()) {
     auto recorded = reader.next();
     if (!recorded) break;
     if (!reader.sent_by(role, *recorded)) {
@@ -116,7 +117,7 @@ int play(const ReplayArguments& arguments, SessionReader& reader, Endpoint& endp
   }
   wait_until(peer, monotonic_ns() + 500'000'000);
   std::cout << sent << " messages replayed as " << arguments.role << '\n';
-  return interrupted() ? kFailed : kFine;
+  return stop_requested() ? kFailed : kFine;
 }
 
 int run_replay(const ReplayArguments& arguments) {

@@ -11,6 +11,7 @@
 
 #include "protocol/codec/json.hpp"
 #include "protocol/codec/names.hpp"
+#include "protocol/daemon/stop_signal.hpp"
 #include "protocol/transport/monotonic_clock.hpp"
 #include "protocol/vhp/commands.hpp"
 #include "protocol/vhp/common.hpp"
@@ -153,7 +154,7 @@ class Runner {
 
   Result<void> sleep(double seconds) {
     const std::int64_t end = monotonic_ns() + static_cast<std::int64_t>(seconds * 1e9);
-    while (monotonic_ns() < end && !interrupted()) {
+    while (monotonic_ns() < end && !stop_requested()) {
       if (auto fine = pump(end); !fine) return fine;
     }
     return {};
@@ -163,7 +164,7 @@ class Runner {
   Result<void> until(double seconds, Condition condition, const std::string& otherwise) {
     const std::int64_t end = monotonic_ns() + static_cast<std::int64_t>(seconds * 1e9);
     while (!condition()) {
-      if (interrupted()) return failure(ErrorCode::closed, "interrupted");
+      if (stop_requested()) return failure(ErrorCode::closed, "interrupted");
       if (monotonic_ns() >= end) {
         return failure(ErrorCode::timeout, otherwise + " within " + nlohmann::json(seconds).dump() + " s");
       }

@@ -4,6 +4,7 @@
 
 #include "protocol/codec/json.hpp"
 #include "protocol/codec/names.hpp"
+#include "protocol/daemon/stop_signal.hpp"
 #include "protocol/transport/monotonic_clock.hpp"
 #include "protocol/vhp/commands.hpp"
 #include "protocol/vhp/common.hpp"
@@ -34,7 +35,7 @@ void print_feedback(const SendArguments& arguments, const Feedback& feedback) {
 
 int wait_for_answer(const SendArguments& arguments, Endpoint& endpoint) {
   const std::int64_t until = monotonic_ns() + static_cast<std::int64_t>(arguments.timeout_s * 1e9);
-  while (!interrupted() && monotonic_ns() < until) {
+  while (!stop_requested() && monotonic_ns() < until) {
     for (const Inbound& inbound : endpoint.receive(50'000'000)) {
       if (const auto* left = std::get_if<PeerLeft>(&inbound)) std::cerr << "away: " << left->reason.message << '\n';
       const auto* received = std::get_if<Received>(&inbound);
@@ -55,7 +56,7 @@ int wait_for_answer(const SendArguments& arguments, Endpoint& endpoint) {
 // Until the other side has it: a kept message is acknowledged, then nothing waits any more.
 int wait_until_taken(Endpoint& endpoint) {
   const std::int64_t until = monotonic_ns() + 3'000'000'000;
-  while (!interrupted() && monotonic_ns() < until) {
+  while (!stop_requested() && monotonic_ns() < until) {
     for (const Inbound& inbound : endpoint.receive(10'000'000)) {
       const auto* received = std::get_if<Received>(&inbound);
       const auto* report = received == nullptr ? nullptr : std::get_if<ErrorReport>(&received->message);

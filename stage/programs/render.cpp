@@ -23,7 +23,7 @@ void show_progress(int done, int all) {
 
 }  // namespace
 
-Result<void> run_render(const RenderOptions& options, const std::atomic<bool>& interrupted) {
+Result<void> run_render(const RenderOptions& options, const std::function<bool()>& stop_requested) {
   Result<Scenario> scenario = load_scenario(options.scenario);
   if (!scenario) return tl::make_unexpected(scenario.error());
   if (options.seed) reseed(*scenario, *options.seed);
@@ -36,8 +36,8 @@ Result<void> run_render(const RenderOptions& options, const std::atomic<bool>& i
   using Clock = std::chrono::steady_clock;
   Clock::duration drawing{};
   int done = 0;
-  for (int i = 0; i < options.from && !interrupted; ++i) film->skip();
-  while (done < frames && !interrupted) {
+  for (int i = 0; i < options.from && !stop_requested(); ++i) film->skip();
+  while (done < frames && !stop_requested()) {
     const auto start = Clock::now();
     const Shot shot = film->next();
     drawing += Clock::now() - start;

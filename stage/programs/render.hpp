@@ -1,8 +1,8 @@
 // `stage render`: a scenario as a folder of pictures.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -19,6 +19,6 @@ struct RenderOptions {
   bool masks = false;
 };
 
-[[nodiscard]] Result<void> run_render(const RenderOptions& options, const std::atomic<bool>& interrupted);
+[[nodiscard]] Result<void> run_render(const RenderOptions& options, const std::function<bool()>& stop_requested);
 
 }  // namespace counterpart::stage

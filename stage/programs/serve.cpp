@@ -104,15 +104,15 @@ class Broadcast {
 }  // namespace
 
 Result<void> serve_film(Film& film, Endpoint& endpoint, const ServeOptions& options,
-                        const std::atomic<bool>& interrupted) {
+                        const std::function<bool()>& stop_requested) {
   constexpr std::int64_t kListen_ns = 20'000'000;
   Broadcast broadcast(film, endpoint, options);
   if (const Result<void> opened = broadcast.open_truth(); !opened) return opened;
   const auto period =
       std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / film.scenario().fps));
   auto due = Clock::now();
-  while (!interrupted && !(options.frames > 0 && broadcast.sent() >= options.frames &&
-                           (broadcast.last_is_done() || !options.lockstep))) {
+  while (!stop_requested() && !(options.frames > 0 && broadcast.sent() >= options.frames &&
+                                (broadcast.last_is_done() || !options.lockstep))) {
     // Nobody watches: the room holds its breath, so that nobody misses a move.
     const bool ready = broadcast.watched() && (options.lockstep ? broadcast.last_is_done() : Clock::now() >= due);
     if (!ready) {
@@ -129,13 +129,13 @@ Result<void> serve_film(Film& film, Endpoint& endpoint, const ServeOptions& opti
     if (const Result<void> sent = broadcast.send_next(); !sent) return sent;
   }
   spdlog::info("{} frames sent", broadcast.sent());
-  endpoint.broadcast(Bye{interrupted ? "stopped" : "the film has ended"});
+  endpoint.broadcast(Bye{stop_requested() ? "stopped" : "the film has ended"});
   // The last words go out in the background.
   broadcast.listen(200'000'000);
   return {};
 }
 
-Result<void> run_serve(const ServeOptions& options, const std::atomic<bool>& interrupted) {
+Result<void> run_serve(const ServeOptions& options, const std::function<bool()>& stop_requested) {
   Scenario scenario;
   if (!options.scenario.empty()) {
     Result<Scenario> loaded = load_scenario(options.scenario);
@@ -153,7 +153,7 @@ Result<void> run_serve(const ServeOptions& options, const std::atomic<bool>& int
   Result<std::unique_ptr<Endpoint>> endpoint = listen_tcp(options.listen, link);
   if (!endpoint) return tl::make_unexpected(endpoint.error());
   spdlog::info("a camera at vhp://{}", (*endpoint)->address());
-  return serve_film(*film, **endpoint, options, interrupted);
+  return serve_film(*film, **endpoint, options, stop_requested);
 }
 
 }  // namespace counterpart::stage

@@ -1,8 +1,8 @@
 // `stage serve`: a camera over our own protocol, and the real player who watches the game on the same link.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -22,11 +22,11 @@ struct ServeOptions {
   bool lockstep = false;
 };
 
-[[nodiscard]] Result<void> run_serve(const ServeOptions& options, const std::atomic<bool>& interrupted);
+[[nodiscard]] Result<void> run_serve(const ServeOptions& options, const std::function<bool()>& stop_requested);
 
 // The same on a link that is already there. Sends INTRINSICS and the current frame to everyone who joins; lockstep: the
 // next frame when a peer reports FRAME_DONE for the last, otherwise by the clock. Ends after options.frames with BYE.
 [[nodiscard]] Result<void> serve_film(Film& film, Endpoint& endpoint, const ServeOptions& options,
-                                      const std::atomic<bool>& interrupted);
+                                      const std::function<bool()>& stop_requested);
 
 }  // namespace counterpart::stage

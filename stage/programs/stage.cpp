@@ -1,23 +1,15 @@
 // The program `stage`: a simulated room with a camera, a board and a real player.
-#include <atomic>
-#include <csignal>
-#include <cstdio>
 #include <cstdlib>
 
 #include <CLI/CLI.hpp>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "protocol/daemon/stop_signal.hpp"
 #include "stage/programs/render.hpp"
 #include "stage/programs/serve.hpp"
 
 namespace {
-
-std::atomic<bool> interrupted{false};
-
-void on_signal(int) {
-  interrupted = true;
-}
 
 int finish(const counterpart::Result<void>& result) {
   if (result) return 0;
@@ -34,8 +26,7 @@ int main(int argc, char** argv) {
   using namespace counterpart::stage;
   spdlog::set_default_logger(spdlog::stderr_logger_mt("stage"));
   spdlog::set_pattern("%H:%M:%S.%e %n %l: %v");
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  counterpart::catch_stop_signals();
 
   CLI::App app("A simulated room: a camera, a board, a real player, and the exact truth about them.");
   app.set_version_flag("--version", std::string("stage ") + COUNTERPART_VERSION);
@@ -66,5 +57,6 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  return finish(*render_command ? run_render(render, interrupted) : run_serve(serve, interrupted));
+  return finish(*render_command ? run_render(render, counterpart::stop_requested)
+                                : run_serve(serve, counterpart::stop_requested));
 }

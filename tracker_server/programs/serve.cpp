@@ -22,7 +22,7 @@ struct Arguments {
   std::string init = "auto";
   std::string virtual_side = "light";
   std::string activity = "game";
-  std::string video = "raw";
+  std::string video = "auto";
   std::string pieces = "appearance";
   double square_size_m = 0;
 };
@@ -74,7 +74,8 @@ Result<void> complete(Arguments& arguments) {
   serve.link.role = Role::tracker;
   serve.link.software = "tracker_server " COUNTERPART_VERSION;
   serve.link.lockstep = serve.lockstep;
-  serve.link.video_codec = arguments.video == "raw" ? PixelCodec::raw_bgr8 : PixelCodec::jpeg;
+  if (arguments.video == "raw") serve.link.video_codec = PixelCodec::raw_bgr8;
+  if (arguments.video == "jpeg") serve.link.video_codec = PixelCodec::jpeg;
   return {};
 }
 
@@ -129,8 +130,8 @@ void add_serve(CLI::App& app, int& exit_code) {
   command->add_option("--poses", serve.poses_file, "write every pose here, CSV");
   command->add_option("--report", serve.report_file, "write counts and times here at the end, JSON");
   command->add_option("--record", serve.link.record_file, "capture everything on the link, MCAP");
-  command->add_option("--video", arguments->video, "raw (loopback) or jpeg (between hosts)")
-      ->check(CLI::IsMember({"raw", "jpeg"}))
+  command->add_option("--video", arguments->video, "raw, jpeg, or auto: raw on loopback, between hosts by what the link carries")
+      ->check(CLI::IsMember({"auto", "raw", "jpeg"}))
       ->capture_default_str();
   command->callback([arguments, &exit_code] {
     if (auto completed = complete(*arguments); !completed) {

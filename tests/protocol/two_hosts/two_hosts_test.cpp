@@ -12,24 +12,23 @@
 
 #include "tests/protocol/robustness/scale.hpp"
 #include "tests/support/program.hpp"
+#include "tests/support/two_name_spaces.hpp"
 
 namespace counterpart {
 namespace {
 
+using testing_support::ip;
 using testing_support::Outcome;
 using testing_support::Program;
 using testing_support::run;
 using testing_support::TemporaryFolder;
+using testing_support::TwoNameSpaces;
 
 using std::chrono::seconds;
 using Words = std::vector<std::string>;
 
 constexpr const char* kAddress = "10.99.7.1:7401";
 constexpr int kAheadS = 1000;
-
-Outcome ip(const Words& arguments) {
-  return run("/sbin/ip", arguments);
-}
 
 struct LineOptions {
   double delay_ms = 20, jitter_ms = 0, loss = 0, reorder = 0;
@@ -38,22 +37,10 @@ struct LineOptions {
 class TwoHosts : public testing::Test {
  protected:
   void SetUp() override {
-    if (::geteuid() != 0) GTEST_SKIP() << "network namespaces need root";
-    if (!std::filesystem::exists("/sbin/ip")) GTEST_SKIP() << "the program ip (package iproute2) is missing";
+    if (!hosts_.why_not().empty()) GTEST_SKIP() << hosts_.why_not();
     if (!std::filesystem::exists("/dev/net/tun")) GTEST_SKIP() << "/dev/net/tun is missing";
-    begun_ = true;
-    for (const std::string& host : {tracker_host_, renderer_host_}) {
-      const Outcome added = ip({"netns", "add", host});
-      if (added.exit_code != 0) GTEST_SKIP() << "network namespaces are not permitted here: " << added.err;
-    }
     std::ofstream(folder_.path("token")) << "0123456789abcdef0123456789abcdef\n";
     std::filesystem::permissions(folder_.path("token"), std::filesystem::perms::owner_read);
-  }
-
-  void TearDown() override {
-    line_.reset();
-    if (!begun_) return;
-    for (const std::string& host : {tracker_host_, renderer_host_}) ip({"netns", "delete", host});
   }
 
   void connect(const LineOptions& options) {
@@ -85,10 +72,9 @@ class TwoHosts : public testing::Test {
     return nlohmann::json::parse(renderer.out, nullptr, false);
   }
 
-  bool begun_ = false;
   TemporaryFolder folder_;
-  const std::string tracker_host_ = "cp_a" + std::to_string(::getpid());
-  const std::string renderer_host_ = "cp_b" + std::to_string(::getpid());
+  const TwoNameSpaces hosts_;
+  const std::string tracker_host_ = hosts_.tracker_host(), renderer_host_ = hosts_.renderer_host();
   std::unique_ptr<Program> line_;
 };
 

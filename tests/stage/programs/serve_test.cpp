@@ -59,7 +59,7 @@ TEST(Serve, LockstepSendsEveryFrameOnceAndSaysGoodbye) {
   std::atomic<bool> interrupted{false}, finished{false};
   Seen seen;
   std::thread tracker([&, &end = *tracker_end] { seen = watch(end, finished); });
-  const Result<void> served = serve_film(film, *camera_end, options, interrupted);
+  const Result<void> served = serve_film(film, *camera_end, options, [&] { return interrupted.load(); });
   finished = true;
   tracker.join();
   EXPECT_TRUE(served.has_value());
@@ -79,7 +79,7 @@ TEST(Serve, LockstepWaitsForFrameDone) {
     seen = watch(end, finished, 2);
     interrupted = true;
   });
-  EXPECT_TRUE(serve_film(film, *camera_end, options, interrupted).has_value());
+  EXPECT_TRUE(serve_film(film, *camera_end, options, [&] { return interrupted.load(); }).has_value());
   finished = true;
   tracker.join();
   EXPECT_EQ(seen.frames, (std::vector<FrameId>{0, 1, 2})) << "the third was never answered";
