@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
   int exit_code = 0;
   counterpart::add_serve(app, exit_code);
   counterpart::add_play(app, exit_code);
-  counterpart::add_clips(app);
+  counterpart::add_clips(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -126,6 +126,21 @@ std::uint64_t Choreographer::move(const std::string& piece, const std::vector<in
   return carried;
 }
 
+std::uint64_t Choreographer::carry(const std::string& piece, const Point3& to_B) {
+  // One after the other: two hands at once over the same squares would be in each other's way.
+  std::vector<std::uint64_t> after;
+  std::int64_t patience_ms = grasp_deadline_ms;
+  for (const Command& command : outstanding_) {
+    if (!std::holds_alternative<Grasp>(command.action)) continue;
+    after = {command.id};
+    patience_ms += grasp_deadline_ms / 4;
+  }
+  Grasp grasp;
+  grasp.piece = piece;
+  grasp.path_B = {to_B};
+  return tell(grasp, std::move(after), patience_ms);
+}
+
 void Choreographer::object(const std::string& code, const std::string& text, int square) {
   if (square > 0) tell(at_square(square));
   tell(face("doubt", 0.8, 2.5));

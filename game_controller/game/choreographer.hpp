@@ -38,6 +38,9 @@ class Choreographer {
   // Looks, reaches, carries along the route, lets go. Returns the id of the grasp. second_try: another hand and style.
   std::uint64_t move(const std::string& piece, const std::vector<int>& route, bool second_try);
 
+  // Takes a piece somewhere else than a move does: off the board, or onto a man. Returns the id of the grasp.
+  std::uint64_t carry(const std::string& piece, const Point3& to_B);
+
   void object(const std::string& code, const std::string& text, int square);    // an illegal move
   void point_at(int square, const std::string& code, const std::string& text);  // a piece to remove
   void conclude(bool won, bool drawn, const std::string& code, const std::string& text);

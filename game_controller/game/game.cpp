@@ -16,6 +16,10 @@ namespace {
 constexpr std::int64_t hand_patience_ns =
     45'000'000'000;  // no word of a grasp for so long: the piece is set without it
 
+bool is_crowned(const Rules& rules, const Position& before, const Move& move) {
+  return (before.kings & one(move.from)) == 0 && (after(rules, before, move).kings & one(move.to)) != 0;
+}
+
 const char* side_name(Side side) {
   return side == Side::light ? "light" : "dark";
 }
@@ -23,7 +27,7 @@ const char* side_name(Side side) {
 }  // namespace
 
 Game::State::State(const GameOptions& o, const Rules& r, const Position& start, std::uint64_t first_command)
-    : options(o), rules(&r), record(r, start), human(o.board, first_command) {
+    : options(o), rules(&r), record(r, start), lost(o.board, o.virtual_side), human(o.board, first_command) {
   name_pieces();
 }
 
@@ -40,7 +44,8 @@ void Game::State::step(const GameInputs& inputs) {
   }
   if (pending && pending->told_ns < 0) pending->told_ns = now_ns;  // resumed: its patience begins now
   if (pending && pending->grasp != 0 && now_ns - pending->told_ns > hand_patience_ns) landed();
-  if (pending && pending->grasp == 0 && phase == GamePhase::virtual_to_move) tell_move();
+  if (lost.under_way() && now_ns - lost_told_ns > hand_patience_ns) set_lost_down();
+  if (pending && pending->grasp == 0 && phase == GamePhase::virtual_to_move && !lost.under_way()) tell_move();
   if (ask_engine && phase == GamePhase::virtual_to_move) {
     ask_engine = false;
     thinking = true;
@@ -94,7 +99,7 @@ void Game::State::commit(const Move& move) {
   const Side mover = before.turn;
   const auto ways = routes(*rules, before, move);
   const Route& route = ways.front();
-  const bool crowned = (before.kings & one(move.from)) == 0 && (after(*rules, before, move).kings & one(move.to)) != 0;
+  const bool crowned = is_crowned(*rules, before, move);
   GameEvent& moved = event(EventKind::move);
   moved.side = mover;
   moved.move = pdn_text(*rules, before, move);
@@ -112,7 +117,8 @@ void Game::State::commit(const Move& move) {
     if (mover == real_side()) human.say("crowned", sentence("crowned", promoted.squares));
   }
   explain_surprise(before, move, route);
-  move_names(route);
+  move_names(before, move, route);
+  carry_lost();
   record.play(move);
   announced.reset();
 }
@@ -157,6 +163,7 @@ void Game::State::tell_move() {
 
 void Game::State::hear(const Feedback& feedback) {
   human.hear(feedback);
+  if (is_final(feedback.state) && lost.ended(feedback.command_id)) show_scene();
   if (!pending || pending->grasp == 0 || feedback.command_id != pending->grasp || !is_final(feedback.state)) return;
   if (feedback.state == FeedbackState::finished) {
     landed();
@@ -165,7 +172,7 @@ void Game::State::hear(const Feedback& feedback) {
     pending->grasp = 0;
     // Wherever the first try has left the piece, the second one starts from its square.
     show_scene();
-    if (phase == GamePhase::virtual_to_move) tell_move();
+    if (phase == GamePhase::virtual_to_move && !lost.under_way()) tell_move();
   } else {
     landed();
     show_scene();
@@ -221,6 +228,12 @@ void Game::State::removal_done() {
 
 void Game::State::renderer_joined() {
   human.enter();
+  // Hands that are told again go on under other ids; those of a process that is no more have done what they were to do.
+  for (LostPiece& piece : lost.all()) {
+    const std::uint64_t now = human.current_id(piece.grasp);
+    piece.grasp = now == piece.grasp ? 0 : now;
+  }
+  lost_told_ns = now_ns;
   show_scene();
   if (pending) {
     // After a restart of this process the grasp that was on its way is not among what was told: tell it again.
@@ -287,11 +300,12 @@ Scene Game::State::scene() const {
     ScenePiece piece;
     piece.name = name;
     piece.side = (p.light & bit) != 0 ? Side::light : Side::dark;
-    piece.king = (p.kings & bit) != 0;
+    piece.king = (p.kings & bit) != 0 && !lost.awaits_crown(name);
     piece.real = piece.side == real_side();
     piece.p_B = centre_of_square_B(square, options.board);
     scene.pieces.push_back(std::move(piece));
   }
+  lost.show(scene.pieces);
   return scene;
 }
 
@@ -303,21 +317,46 @@ void Game::State::show_scene() {
 // Names follow the pieces from their first squares through the whole game.
 void Game::State::name_pieces() {
   names.clear();
+  lost = LostPieces(options.board, options.virtual_side);
   const Position& p = record.start();
   for (const int square : squares(p.light | p.dark)) {
     const Side side = (p.light & square_mask(square, rules->squares)) != 0 ? Side::light : Side::dark;
     names[square] = std::string(side_name(side)) + "_" + std::to_string(square);
   }
   for (std::size_t i = 0; i < record.moves().size(); ++i) {
-    move_names(routes(*rules, record.position_before(i), record.moves()[i]).front());
+    const Position before = record.position_before(i);
+    move_names(before, record.moves()[i], routes(*rules, before, record.moves()[i]).front());
+  }
+  lost.settle();
+}
+
+// What the virtual player loses lies beside the board, and crowns his men that become kings.
+void Game::State::move_names(const Position& before, const Move& move, const Route& route) {
+  std::string name = names[route.squares.front()];
+  names.erase(route.squares.front());
+  for (const int square : route.captured) {
+    if (before.turn == real_side()) {
+      lost.capture(names[square], (before.kings & square_mask(square, rules->squares)) != 0, square);
+    }
+    names.erase(square);
+  }
+  if (before.turn == options.virtual_side && is_crowned(*rules, before, move)) lost.crown(name, route.squares.back());
+  names[route.squares.back()] = std::move(name);
+}
+
+// His hands take what has just left its place to where it belongs.
+void Game::State::carry_lost() {
+  for (LostPiece& piece : lost.all()) {
+    if (!std::exchange(piece.to_carry, false)) continue;
+    piece.grasp = human.carry(piece.name, piece.place_B);
+    lost_told_ns = now_ns;
   }
 }
 
-void Game::State::move_names(const Route& route) {
-  std::string name = names[route.squares.front()];
-  names.erase(route.squares.front());
-  for (const int square : route.captured) names.erase(square);
-  names[route.squares.back()] = std::move(name);
+// Nobody says what became of his hands: the pieces are where they belong without them.
+void Game::State::set_lost_down() {
+  lost.settle();
+  show_scene();
 }
 
 Game::Game(std::unique_ptr<State> state) : state_(std::move(state)) {}

@@ -63,7 +63,7 @@ void Game::State::take_back() {
     out.rejected.push_back("There is no move of yours to take back yet.");
     return;
   }
-  if (pending || thinking) human.stop();
+  if (pending || thinking || lost.under_way()) human.stop();
   while (record.moves().size() >= plies) record.undo();
   GameEvent& e = event(EventKind::undone);
   e.side = real_side();
@@ -94,6 +94,7 @@ void Game::State::it_was(const std::string& text) {
     return;
   }
   if (replacing) {
+    if (lost.under_way()) human.stop();
     record.undo();
     name_pieces();
     event(EventKind::undone).side = real_side();

@@ -8,6 +8,7 @@
 
 #include "game_controller/game/choreographer.hpp"
 #include "game_controller/game/game.hpp"
+#include "game_controller/game/lost_pieces.hpp"
 #include "game_controller/game/reading.hpp"
 #include "game_controller/rules/record.hpp"
 #include "game_controller/rules/rules.hpp"
@@ -27,6 +28,7 @@ struct Game::State {
   const Rules* rules;
   Record record;
   std::map<int, std::string> names;  // of every piece, by the square it stands on
+  LostPieces lost;                   // the virtual player's
   Choreographer human;
 
   GamePhase phase = GamePhase::setting_up;
@@ -38,6 +40,7 @@ struct Game::State {
   bool ask_engine = false;
   std::optional<PendingMove> pending;
   Bits to_remove = 0;
+  std::int64_t lost_told_ns = 0;  // since when his hands have been told to move lost pieces
 
   std::uint64_t revision = 0;
   std::uint64_t scene_revision = 0;
@@ -97,6 +100,8 @@ struct Game::State {
   void tell_move();
   void hear(const Feedback& feedback);
   void landed();
+  void carry_lost();
+  void set_lost_down();
   void renderer_joined();
 
   void obey(const Control& control);
@@ -114,7 +119,7 @@ struct Game::State {
   Scene scene() const;
   void show_scene();
   void name_pieces();
-  void move_names(const Route& route);
+  void move_names(const Position& before, const Move& move, const Route& route);
 };
 
 }  // namespace counterpart

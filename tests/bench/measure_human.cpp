@@ -1,12 +1,15 @@
 // Measures a virtual human: what every figure means stands in docs/human.md. Prints a JSON line for each measurement.
-//   measure_human [--opponent NAME] [reach] [carry] [clear] [walk] [clips] [commands] [cost] [draw]
-//                 [load]     (nothing: all)
+//   measure_human [--opponent NAME | --all] [reach] [carry] [clear] [walk] [clips] [commands] [cost] [draw] [load]
+// No measurement named: all of them. --all: the mannequin and every ready opponent, and a table at the end.
 #include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <functional>
+#include <iomanip>
 #include <iostream>
+#include <map>
 #include <set>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 #include <unistd.h>
@@ -38,6 +41,7 @@ json of(const GraspFigures& f) {
   return {{"grasps", f.grasps},
           {"failed", f.failed},
           {"gap_mm", f.worst_gap_mm},
+          {"where", f.where},
           {"place_mm", f.worst_place_mm},
           {"deepest_mm", f.deepest_mm},
           {"finger_gap_mm", f.widest_gap_mm},
@@ -45,10 +49,16 @@ json of(const GraspFigures& f) {
 }
 
 json of(const PoseJudge& judge) {
-  json beyond = json::object();
-  for (const auto& [name, worst] : judge.beyond_deg) beyond[name] = {{"deg", worst.value}, {"when", worst.when}};
+  json breaks = json::object();
+  for (const auto& [name, broken] : judge.breaks) {
+    breaks[name] = {{"times", broken.times},
+                    {"frames", broken.frames},
+                    {"first", broken.first},
+                    {"deg", broken.worst.value},
+                    {"worst", broken.worst.when}};
+  }
   return {{"finite", judge.finite},
-          {"beyond_limits", beyond},
+          {"breaks", breaks},
           {"turn_deg_a_frame", judge.turn_deg.value},
           {"turn_at", judge.turn_deg.joint + ", " + judge.turn_deg.when},
           {"move_m_a_frame", judge.move_m.value},
@@ -64,6 +74,7 @@ json clear(const Figure& figure) {
   const ClearanceFigures f = measure_clearance(figure, 200, 5);
   return {{"moves", f.moves},
           {"failed", f.failed},
+          {"gap_mm", f.gap_mm},
           {"in_pieces_mm", f.in_pieces_mm},
           {"where", f.where},
           {"by_phase_mm", f.in_pieces_by_phase_mm},
@@ -172,34 +183,136 @@ json load(const std::string& opponent) {
   return {{"build_ms", build_ms}, {"load_ms", load_ms}};
 }
 
-int measure(const std::string& opponent, const std::set<std::string>& wanted) {
-  const auto figure = figure_of(opponent);
-  if (!figure) {
-    std::cerr << "measure_human: " << figure.error().message << "\n";
-    return 1;
+// What is measured, what is asked of it, and its figures in a line.
+struct Measurement {
+  std::string name;
+  std::string asked;
+  std::function<json(const Figure& figure, const std::string& opponent)> work;
+  std::function<std::string(const json& figures)> in_a_line;
+  std::function<bool(const json& figures)> met;
+};
+
+std::string text_of(double value) {
+  std::ostringstream out;
+  out << std::setprecision(2) << value;
+  return out.str();
+}
+
+double either(const json& hands, const char* key) {
+  return std::max(hands["left"][key].get<double>(), hands["right"][key].get<double>());
+}
+
+double widest(const json& hands) {
+  double gap = 0;
+  for (const char* hand : {"left", "right"}) {
+    for (const json& finger : hands[hand]["finger_gap_mm"]) gap = std::max(gap, finger.get<double>());
   }
-  const std::vector<std::pair<std::string, std::function<json()>>> all{
-      {"reach", [&] { return reach(*figure, all_moves(), false); }},
-      {"carry", [&] { return reach(*figure, fifty_moves(), true); }},
-      {"clear", [&] { return clear(*figure); }},
-      {"walk", [&] { return walk(*figure); }},
-      {"clips", [&] { return clips(*figure); }},
-      {"commands", [&] { return commands(*figure); }},
-      {"cost", [&] { return cost(*figure); }},
-      {"draw", [&] { return draw(*figure); }},
-      {"load", [&] { return load(opponent); }}};
+  return gap;
+}
+
+std::string bounds_in_a_line(const json& f) {
+  int times = 0;
+  for (const json& broken : f["breaks"]) times += broken["times"].get<int>();
+  return std::to_string(times) + "; " + text_of(f["turn_deg_a_frame"]) + "°, " + text_of(f["move_m_a_frame"]) + " m";
+}
+
+bool within_bounds(const json& f) {
+  return f["breaks"].empty() && f["finite"] && f["turn_deg_a_frame"] < largest_turn_deg() &&
+         f["move_m_a_frame"] < largest_move_m();
+}
+
+std::vector<Measurement> measurements() {
+  const std::string bounds =
+      "0 limits broken; " + text_of(largest_turn_deg()) + "°, " + text_of(largest_move_m()) + " m";
+  return {
+      {"reach", "0 failed; gap 3 mm", [](const auto& figure, const auto&) { return reach(figure, all_moves(), false); },
+       [](const json& f) {
+         return std::to_string(f["left"]["failed"].get<int>() + f["right"]["failed"].get<int>()) + "; " +
+                text_of(either(f, "gap_mm")) + " mm";
+       },
+       [](const json& f) { return either(f, "failed") == 0 && either(f, "gap_mm") <= 3; }},
+      {"carry", "2 mm in the piece; 2 mm beside it",
+       [](const auto& figure, const auto&) { return reach(figure, fifty_moves(), true); },
+       [](const json& f) { return text_of(either(f, "deepest_mm")) + "; " + text_of(widest(f)) + " mm"; },
+       [](const json& f) { return either(f, "failed") == 0 && either(f, "deepest_mm") <= 2 && widest(f) <= 2; }},
+      {"clear", "3 mm in other pieces; 3 mm in the table",
+       [](const auto& figure, const auto&) { return clear(figure); },
+       [](const json& f) { return text_of(f["in_pieces_mm"]) + "; " + text_of(f["in_table_mm"]) + " mm"; },
+       [](const json& f) { return f["failed"] == 0 && f["in_pieces_mm"] <= 3 && f["in_table_mm"] <= 3; }},
+      {"walk", "5 mm of slide a step", [](const auto& figure, const auto&) { return walk(figure); },
+       [](const json& f) { return text_of(f["slide_mm"]) + " mm"; }, [](const json& f) { return f["slide_mm"] <= 5; }},
+      {"clips", bounds, [](const auto& figure, const auto&) { return clips(figure); }, bounds_in_a_line, within_bounds},
+      {"commands", bounds + "; one answer each", [](const auto& figure, const auto&) { return commands(figure); },
+       [](const json& f) {
+         return bounds_in_a_line(f) + "; " + std::to_string(f["without_answer"].get<int>()) + " without, " +
+                std::to_string(f["with_several"].get<int>() + f["said_after_end"].get<int>()) + " with more";
+       },
+       [](const json& f) {
+         return within_bounds(f) && f["without_answer"] == 0 && f["with_several"] == 0 && f["said_after_end"] == 0 &&
+                f["legal_end"];
+       }},
+      {"cost", "0.2 ms", [](const auto& figure, const auto&) { return cost(figure); },
+       [](const json& f) { return text_of(f["step_ms"]["median"]) + " (" + text_of(f["step_ms"]["p95"]) + ") ms"; },
+       [](const json& f) { return f["step_ms"]["median"] <= 0.2; }},
+      {"draw", "", [](const auto& figure, const auto&) { return draw(figure); },
+       [](const json& f) {
+         return f.contains("skipped") ? ""
+                                      : std::to_string(f["shown"]["triangles"].get<int>()) + "; " +
+                                            text_of(f["shown"]["draw_ms"]) + " ms";
+       },
+       [](const json&) { return true; }},
+      {"load", "2; 0.2 s", [](const auto&, const auto& opponent) { return load(opponent); },
+       [](const json& f) {
+         return f.contains("skipped") ? ""
+                                      : text_of(f["build_ms"].get<double>() / 1000) + "; " +
+                                            text_of(f["load_ms"].get<double>() / 1000) + " s";
+       },
+       [](const json& f) { return f.contains("skipped") || (f["build_ms"] <= 2000 && f["load_ms"] <= 200); }}};
+}
+
+// A line a measurement, a column an opponent; what misses what is asked is marked.
+void print_table(const std::vector<Measurement>& rows, const std::vector<std::string>& opponents,
+                 const std::map<std::pair<std::string, std::string>, json>& figures) {
+  std::cout << "| measured | asked |";
+  for (const std::string& opponent : opponents) std::cout << " " << opponent << " |";
+  std::cout << "\n|---|---|";
+  for (std::size_t i = 0; i < opponents.size(); ++i) std::cout << "---|";
+  std::cout << "\n";
+  for (const Measurement& row : rows) {
+    std::cout << "| " << row.name << " | " << row.asked << " |";
+    for (const std::string& opponent : opponents) {
+      const json& f = figures.at({row.name, opponent});
+      std::cout << " " << row.in_a_line(f) << (row.met(f) ? "" : " MISSED") << " |";
+    }
+    std::cout << "\n";
+  }
+}
+
+int measure(const std::vector<std::string>& opponents, const std::set<std::string>& wanted) {
+  std::vector<Measurement> rows = measurements();
   for (const std::string& name : wanted) {
-    if (std::none_of(all.begin(), all.end(), [&](const auto& one) { return one.first == name; })) {
+    if (std::none_of(rows.begin(), rows.end(), [&](const auto& row) { return row.name == name; })) {
       std::cerr << "measure_human: there is no measurement \"" << name << "\"\n";
       return 2;
     }
   }
-  for (const auto& [name, work] : all) {
-    if (!wanted.empty() && wanted.count(name) == 0) continue;
-    json line{{"opponent", opponent}, {"measured", name}};
-    line.update(work());
-    std::cout << line.dump() << std::endl;
+  if (!wanted.empty()) std::erase_if(rows, [&](const auto& row) { return wanted.count(row.name) == 0; });
+  std::map<std::pair<std::string, std::string>, json> figures;
+  for (const std::string& opponent : opponents) {
+    const auto figure = figure_of(opponent);
+    if (!figure) {
+      std::cerr << "measure_human: " << figure.error().message << "\n";
+      return 1;
+    }
+    for (const Measurement& row : rows) {
+      const json found = row.work(*figure, opponent);
+      figures[{row.name, opponent}] = found;
+      json line{{"opponent", opponent}, {"measured", row.name}};
+      line.update(found);
+      std::cout << line.dump() << std::endl;
+    }
   }
+  if (opponents.size() > 1) print_table(rows, opponents, figures);
   return 0;
 }
 
@@ -207,14 +320,17 @@ int measure(const std::string& opponent, const std::set<std::string>& wanted) {
 }  // namespace counterpart
 
 int main(int argc, char** argv) {
-  std::string opponent = "default";
+  std::vector<std::string> opponents{"default"};
   std::set<std::string> wanted;
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "--opponent") == 0 && i + 1 < argc) {
-      opponent = argv[++i];
+      opponents = {argv[++i]};
+    } else if (std::strcmp(argv[i], "--all") == 0) {
+      opponents = {"mannequin"};
+      for (const auto& [name, description] : counterpart::ready_characters()) opponents.push_back(name);
     } else {
       wanted.insert(argv[i]);
     }
   }
-  return counterpart::measure(opponent, wanted);
+  return counterpart::measure(opponents, wanted);
 }

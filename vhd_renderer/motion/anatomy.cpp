@@ -168,6 +168,13 @@ LegParts leg_of(Names& names, const std::string& side) {
   leg.ankle_height_m = ankle.z();
   const Vector3f toe = leg.toe >= 0 ? names.place(leg.toe) : Vector3f(ankle + Vector3f(0, 0.13F, 0));
   leg.ball_H = {toe.x(), toe.y(), 0};
+  // The sole's end, as far as it lies on the floor.
+  for (const FigurePart& part : names.figure.parts) {
+    for (const Vector3f& p : part.positions_m) {
+      const bool sole = p.z() < 0.006F && std::abs(p.x() - toe.x()) < 0.08F;
+      if (sole) leg.toe_length_m = std::max(leg.toe_length_m, p.y() - toe.y());
+    }
+  }
   return leg;
 }
 

@@ -64,6 +64,7 @@ struct LegParts {
   int toe = -1;                     // the joint that the foot rolls over; -1: the foot is stiff
   std::vector<int> toes;            // all that hang on the foot, and bend there
   Eigen::Vector3f ball_H{0, 0, 0};  // of the foot, on the sole under the toe joint
+  float toe_length_m = 0;           // from there to where the sole ends
   float ankle_height_m = 0.08F;
 };
 

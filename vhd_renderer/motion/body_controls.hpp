@@ -52,6 +52,8 @@ struct BodyControls {
   std::array<float, 2> shrug{0, 0};      // 0..1
   std::array<ArmGoal, 2> arms;
   std::array<FootGoal, 2> feet;
+  Eigen::Vector3f rise_S{0, 0,
+                         0};      // how far the pelvis can come up and forward off the chair when leaning is not enough
   float chair_y = 0;              // of the hips that sit on the chair as it stands now
   float dt_s = 0;                 // since the frame before; 0: there was none
   float table_z_m = -0.015F;      // elbows and forearms stay above it ...
@@ -60,10 +62,20 @@ struct BodyControls {
   float jaw_rad = 0;
 };
 
+// T: the upper trunk's own frame, its axes as at bind.
+struct ArmMemory {
+  WristAngles bend;                                             // of the wrist
+  float twist_rad = 0;                                          // of the upper arm's twist joint
+  Eigen::Vector3f wrist_T{0, 0, 0};                             // its place
+  Eigen::Quaternionf upper_T = Eigen::Quaternionf::Identity();  // of the two bones, from bind
+  Eigen::Quaternionf fore_T = Eigen::Quaternionf::Identity();
+};
+
 // What a body cannot change in a jump; kept from frame to frame.
 struct BodyMemory {
-  std::array<WristAngles, 2> wrists;
+  std::array<ArmMemory, 2> arms;
   std::array<float, 2> lean{0, 0};  // of the trunk, 0..1, for each arm's sake
+  float rise = 0;                   // off the chair, 0..1
 };
 
 struct SolvedBody {

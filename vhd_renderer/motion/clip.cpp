@@ -1,6 +1,8 @@
 #include "vhd_renderer/motion/clip.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <nlohmann/json.hpp>
 
@@ -26,29 +28,19 @@ std::array<float, 2> mix(const std::array<float, 2>& a, const std::array<float, 
 HandKey mix(const HandKey& a, const HandKey& b, float t) {
   return {a.place + (b.place - a.place) * t, a.rotation.slerp(t, b.rotation)};
 }
-
-template <class T>
-struct Span {
-  const T* a;
-  const T* b;
-  float t;
-};
-
-template <class T>
-Span<T> span_at(const Keys<T>& keys, float t) {
-  if (t <= keys.front().first) return {&keys.front().second, &keys.front().second, 0};
-  for (std::size_t i = 0; i + 1 < keys.size(); ++i) {
-    if (t > keys[i + 1].first) continue;
-    const float length = std::max(1e-3F, keys[i + 1].first - keys[i].first);
-    return {&keys[i].second, &keys[i + 1].second, minimum_jerk((t - keys[i].first) / length)};
-  }
-  return {&keys.back().second, &keys.back().second, 0};
+HandShape mix(const HandShape& a, const HandShape& b, float t) {
+  return blend(a, b, t);
 }
 
 template <class T>
-T value_at(const Keys<T>& keys, float t) {
-  const Span<T> s = span_at(keys, t);
-  return mix(*s.a, *s.b, s.t);
+T value_at(const Clip& clip, const Keys<T>& keys, float t) {
+  const auto later = [](float time, const auto& key) { return time < key.first; };
+  const auto next = std::upper_bound(keys.begin(), keys.end(), t, later);
+  if (next == keys.begin()) return next->second;
+  const auto last = std::prev(next);
+  if (next == keys.end()) return last->second;
+  const float share = (t - last->first) / std::max(1e-3F, next->first - last->first);
+  return mix(last->second, next->second, clip.sampled ? share : minimum_jerk(share));
 }
 
 // In the plane x = 0. The hand frame W keeps x along the fingers and z out of the back on both sides.
@@ -106,6 +98,17 @@ HandKey hand_key(const std::vector<float>& v) {
   return {{v[1], v[2], v[3]}, Quaternionf(R)};
 }
 
+Keys<HandShape> shape_keys(const json& track, const std::string& name) {
+  if (!track.is_array() || track.empty() || track.size() > 1000) throw BadClip{"\"" + name + "\" has no keys"};
+  Keys<HandShape> keys;
+  for (const json& key : track) {
+    const float time = key.at(0).get<float>();
+    if (!keys.empty() && time <= keys.back().first) throw BadClip{"the times of \"" + name + "\" do not grow"};
+    keys.emplace_back(time, hand_shape(key.at(1).get<std::string>()));
+  }
+  return keys;
+}
+
 void read_track(const std::string& name, const json& track, Clip& clip) {
   const auto turn = [](const std::vector<float>& v) { return Turn{radians(v[1]), radians(v[2]), radians(v[3])}; };
   if (name == "head") {
@@ -129,7 +132,7 @@ void read_track(const std::string& name, const json& track, Clip& clip) {
     } else if (sided && what == "swivel") {
       clip.swivel[side] = keys_of<float>(track, 1, name, [](const auto& v) { return radians(v[1]); });
     } else if (sided && what == "shape") {
-      for (const json& key : track) clip.shape[side].emplace_back(key.at(0).get<float>(), key.at(1).get<std::string>());
+      clip.shape[side] = shape_keys(track, name);
     } else {
       throw BadClip{"there is no track \"" + name + "\""};
     }
@@ -175,18 +178,18 @@ void add_clip(const Clip& clip, float t, float weight, unsigned mask, BodyContro
   };
   if (!clip.head.empty() && (mask & part::head) != 0) {
     const float height = minimum_jerk(4 * t / clip.seconds) * minimum_jerk(4 - 4 * t / clip.seconds);
-    c.head = c.head + turned(value_at(clip.head, t)) + variation.head * (weight * height);
+    c.head = c.head + turned(value_at(clip, clip.head, t)) + variation.head * (weight * height);
   }
   if ((mask & part::trunk) != 0) {
-    if (!clip.spine.empty()) c.spine = c.spine + turned(value_at(clip.spine, t));
-    if (!clip.pelvis.empty()) c.pelvis = c.pelvis + turned(value_at(clip.pelvis, t));
+    if (!clip.spine.empty()) c.spine = c.spine + turned(value_at(clip, clip.spine, t));
+    if (!clip.pelvis.empty()) c.pelvis = c.pelvis + turned(value_at(clip, clip.pelvis, t));
     if (!clip.shrug.empty()) {
-      const auto shrug = value_at(clip.shrug, t);
+      const auto shrug = value_at(clip, clip.shrug, t);
       for (const std::size_t s : {left_side, right_side}) c.shrug[s] += shrug[s] * weight;
     }
   }
   if ((mask & part::face) != 0) {
-    for (const auto& [name, keys] : clip.face) c.morphs[name] += value_at(keys, t) * weight;
+    for (const auto& [name, keys] : clip.face) c.morphs[name] += value_at(clip, keys, t) * weight;
   }
 }
 
@@ -194,17 +197,13 @@ bool clip_hand(const Clip& clip, float t, std::size_t shown_side, const ClipFram
                const ClipVariation& variation) {
   const std::size_t side = variation.mirrored ? 1 - shown_side : shown_side;
   if (clip.hand[side].empty() || !variation.hands) return false;
-  HandKey key = value_at(clip.hand[side], t);
+  HandKey key = value_at(clip, clip.hand[side], t);
   if (variation.mirrored) key = mirrored(key);
   goal.wrist_S = frame.origin_S + frame.R_S * (key.place * frame.arm_m + variation.place);
   goal.R_SW = (frame.R_S * key.rotation).normalized();
   goal.help = 0;
-  goal.swivel_rad = clip.swivel[side].empty() ? 0 : value_at(clip.swivel[side], t);
-  goal.shape = hand_shape("relaxed");
-  if (!clip.shape[side].empty()) {
-    const auto span = span_at(clip.shape[side], t);
-    goal.shape = blend(hand_shape(*span.a), hand_shape(*span.b), span.t);
-  }
+  goal.swivel_rad = clip.swivel[side].empty() ? 0 : value_at(clip, clip.swivel[side], t);
+  goal.shape = clip.shape[side].empty() ? hand_shape("relaxed") : value_at(clip, clip.shape[side], t);
   return true;
 }
 

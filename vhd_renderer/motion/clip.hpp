@@ -39,8 +39,9 @@ struct Clip {
   Keys<std::array<float, 2>> shrug;
   std::map<std::string, Keys<float>> face;
   std::array<Keys<HandKey>, 2> hand;
-  std::array<Keys<std::string>, 2> shape;
+  std::array<Keys<HandShape>, 2> shape;
   std::array<Keys<float>, 2> swivel;
+  bool sampled = false;  // keys lie close together, on a way that was recorded: it goes straight from one to the next
   bool in_head_frame = false;
   bool yields = false;  // done only while there is nothing to do: it ends when the hands or legs are needed
 
@@ -49,8 +50,10 @@ struct Clip {
 
 Result<Clip> parse_clip(std::string_view json_text);
 
-// The clips made here, by name.
-const std::map<std::string, Clip>& clip_library();
+using ClipLibrary = std::map<std::string, Clip>;  // by name
+
+// The clips made here.
+const ClipLibrary& clip_library();
 
 // The frame that hands are given in.
 struct ClipFrame {

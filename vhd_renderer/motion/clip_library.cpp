@@ -120,9 +120,9 @@ constexpr std::array<const char*, 17> sources{
 
 }  // namespace
 
-const std::map<std::string, Clip>& clip_library() {
-  static const std::map<std::string, Clip> library = [] {
-    std::map<std::string, Clip> clips;
+const ClipLibrary& clip_library() {
+  static const ClipLibrary library = [] {
+    ClipLibrary clips;
     for (const char* source : sources) {
       if (auto clip = parse_clip(source); clip) clips.emplace(clip->name, std::move(*clip));
     }

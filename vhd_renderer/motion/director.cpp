@@ -1,6 +1,7 @@
 #include "vhd_renderer/motion/director.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <set>
 
@@ -189,7 +190,7 @@ Vector3f Director::State::gaze_target(const Gaze& g) const {
   return actor->controls().pelvis_S + heading * Vector3f(0, 2.5F, 0.6F);
 }
 
-// Gaze, face and voice: they end by time.
+// Gaze, face and voice.
 void Director::State::advance_rest(ActorInputs& inputs) {
   if (gaze) {
     const double t = now_s - gaze->start_s;
@@ -216,14 +217,23 @@ void Director::State::advance_rest(ActorInputs& inputs) {
       if (held) face.reset();
     }
   }
-  if (speech) {
-    const double t = now_s - speech->start_s;
-    inputs.mouth = speech->utterance.at(t);
-    if (t >= speech->utterance.duration_s()) {
-      queue.end(speech->id, FeedbackState::finished, "", -1, now_ns);
-      speech.reset();
-    }
+  if (speech) advance_speech(inputs);
+}
+
+void Director::State::advance_speech(ActorInputs& inputs) {
+  constexpr double longest_wait_s = 1.5;  // for a sound; after that he speaks without
+  if (!speech->utterance) {
+    const bool ready = speech->to_come.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    if (!ready && now_s - speech->told_s < longest_wait_s) return;
+    if (ready) speech->sound = speech->to_come.get();
+    speech->utterance.emplace(speech->say.text, speech->sound.get());
+    speech->start_s = now_s;
   }
+  const double t = now_s - speech->start_s;
+  inputs.mouth = speech->utterance->at(t);
+  if (t < speech->utterance->duration_s()) return;
+  queue.end(speech->id, FeedbackState::finished, "", -1, now_ns);
+  speech.reset();
 }
 
 Performance Director::State::performance() const {
@@ -267,9 +277,10 @@ Performance Director::State::performance() const {
   return p;
 }
 
-Director::Director(const Figure& figure, Speaker speaker) : state_(std::make_unique<State>()) {
+Director::Director(const Figure& figure, Speaker speaker, ClipLibrary clips) : state_(std::make_unique<State>()) {
   State& s = *state_;
   s.speaker = std::move(speaker);
+  s.library = std::move(clips);
   s.figure = &figure;
   std::set<std::string> names;
   for (const FigurePart& part : figure.parts) {

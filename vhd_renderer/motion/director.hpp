@@ -14,6 +14,7 @@
 #include "protocol/vocabulary/result.hpp"
 #include "protocol/vocabulary/scene.hpp"
 #include "vhd_renderer/body/figure.hpp"
+#include "vhd_renderer/motion/clip.hpp"
 #include "vhd_renderer/voice/sound.hpp"
 
 namespace counterpart {
@@ -47,8 +48,8 @@ struct Performance {
 class Director {
  public:
   // The figure has to outlive the director. A figure without the joints that motion needs stands still, and every
-  // command fails with "no_skeleton".
-  explicit Director(const Figure& figure, Speaker speaker = {});
+  // command fails with "no_skeleton". `clips`: what a keyframe command may name.
+  explicit Director(const Figure& figure, Speaker speaker = {}, ClipLibrary clips = clip_library());
   Director(Director&&) noexcept;
   ~Director();
 

@@ -64,9 +64,9 @@ std::string grasp_trouble(const Grasp& g) {
   return path_trouble(g.path_B);
 }
 
-std::string keyframe_trouble(const Keyframe& k) {
-  const auto clip = clip_library().find(k.clip);
-  if (clip == clip_library().end()) return "unknown_clip";
+std::string keyframe_trouble(const Keyframe& k, const ClipLibrary& library) {
+  const auto clip = library.find(k.clip);
+  if (clip == library.end()) return "unknown_clip";
   if (!std::isfinite(k.speed) || !std::isfinite(k.weight)) return "not_a_number";
   if (k.speed < 0.1 || k.speed > 5) return "bad_speed";
   if (k.weight < 0 || k.weight > 1) return "bad_weight";
@@ -97,8 +97,8 @@ Needs Director::State::needs_of(const Command& command) const {
     return {arm, part::legs, g->hand == Hand::any};
   }
   if (const auto* k = std::get_if<Keyframe>(&command.action)) {
-    const auto clip = clip_library().find(k->clip);
-    return {clip == clip_library().end() ? 0 : clip->second.parts() & parts_of(k->part), 0, false};
+    const auto clip = library.find(k->clip);
+    return {clip == library.end() ? 0 : clip->second.parts() & parts_of(k->part), 0, false};
   }
   if (std::holds_alternative<Navigate>(command.action)) return {part::legs | part::arms, 0, false};
   if (std::holds_alternative<Gaze>(command.action)) return {part::gaze, 0, false};
@@ -113,7 +113,7 @@ std::string Director::State::why_not(const Command& command) const {
   if (command.after.size() > 1000) return "too_long";
   if (std::find(command.after.begin(), command.after.end(), command.id) != command.after.end()) return "after_itself";
   if (const auto* g = std::get_if<Grasp>(&command.action)) return grasp_trouble(*g);
-  if (const auto* k = std::get_if<Keyframe>(&command.action)) return keyframe_trouble(*k);
+  if (const auto* k = std::get_if<Keyframe>(&command.action)) return keyframe_trouble(*k, library);
   if (const auto* n = std::get_if<Navigate>(&command.action)) return navigate_trouble(*n);
   if (const auto* e = std::get_if<Express>(&command.action)) {
     if (!std::isfinite(e->weight) || !std::isfinite(e->hold_s)) return "not_a_number";
@@ -157,7 +157,7 @@ void Director::State::start(CommandQueue::Entry& entry, unsigned free_parts) {
   if (const auto* g = std::get_if<Grasp>(&action)) {
     start_grasp(entry, *g, free_parts);
   } else if (const auto* k = std::get_if<Keyframe>(&action)) {
-    const Clip& clip = clip_library().at(k->clip);
+    const Clip& clip = library.at(k->clip);
     const unsigned mask = clip.parts() & parts_of(k->part);
     // Whoever thinks has his hands free for what he is told to do.
     if (clip.yields) entry.needs.own &= ~part::arms;
@@ -172,8 +172,7 @@ void Director::State::start(CommandQueue::Entry& entry, unsigned free_parts) {
       gaze = RunningGaze{id, *z, now_s};
     }
   } else if (const auto* s = std::get_if<Say>(&action)) {
-    const std::shared_ptr<const Sound> sound = speaker ? speaker(s->text, s->language) : nullptr;
-    speech = RunningSpeech{id, *s, sound, Utterance(s->text, sound.get()), now_s};
+    speech = RunningSpeech{id, *s, speaker ? speaker(s->text, s->language) : ready_sound(nullptr), now_s, {}, {}, 0};
   } else if (const auto* e = std::get_if<Express>(&action)) {
     face = RunningFace{id, *e, now_s};
   } else if (const auto* p = std::get_if<Stop>(&action)) {
@@ -183,8 +182,9 @@ void Director::State::start(CommandQueue::Entry& entry, unsigned free_parts) {
   }
 }
 
-// The way the hand is turned at a place: as near to a person's habit as the neighbours let the open fingers.
-float Director::State::clear_heading(std::size_t side, const Vector3f& foot_S, const std::string& moved) const {
+// The way the hand is turned at a place: as near to a person's habit as the neighbours let the open fingers, and the
+// wrist the hand.
+float Director::State::clear_heading(std::size_t side, const Vector3f& foot_S, const std::string& moved) {
   const auto radius = static_cast<float>(scene.board.piece_radius_m);
   const auto height = static_cast<float>(scene.board.piece_height_m);
   std::vector<std::pair<Vector3f, float>> neighbours;  // place from the piece, height
@@ -193,12 +193,11 @@ float Director::State::clear_heading(std::size_t side, const Vector3f& foot_S, c
     if (piece.piece.name == moved || from.norm() > 0.13F || from.head<2>().norm() < radius) continue;
     neighbours.emplace_back(from, height * (piece.piece.king ? 2 : 1));
   }
-  const float natural = natural_heading(side, foot_S);
-  if (neighbours.empty()) return natural;
+  const Grip& grip = grips[side];
   const auto clearance = [&](float heading) {
     const AngleAxisf turn(heading + pi_f / 2, Vector3f::UnitZ());
     float least = 1;
-    for (const Vector3f& p_P : grips[side].open_skin_P) {
+    for (const Vector3f& p_P : grip.open_skin_P) {
       if (p_P.z() > 2 * height) continue;
       const Vector3f p = turn * p_P;
       for (const auto& [from, tall] : neighbours) {
@@ -207,25 +206,31 @@ float Director::State::clear_heading(std::size_t side, const Vector3f& foot_S, c
     }
     return least;
   };
+  const auto gap = [&](float heading) {
+    return actor->reach_gap_m(side, holding(grip.X_WP, {foot_S, heading}, grip.closed));
+  };
   constexpr float enough_m = 0.002F;
+  constexpr float slack_m = 0.0003F;
+  const float natural = natural_heading(side, foot_S);
   float best = natural;
-  float best_clearance = -1;
+  float best_score = -1e9F;
   for (int step = 0; step <= 16; ++step) {
     for (const float sign : {1.F, -1.F}) {
       const float heading = natural + sign * radians(5) * static_cast<float>(step);
       if (std::abs(heading) > radians(55)) continue;
-      const float free = clearance(heading);
-      if (free >= enough_m) return heading;
-      if (free > best_clearance) {
-        best_clearance = free;
-        best = heading;
-      }
+      const float free = std::min(clearance(heading), enough_m);
+      if (free <= best_score) continue;
+      const float score = free - gap(heading);
+      if (score >= enough_m - slack_m) return heading;
+      if (score <= best_score) continue;
+      best_score = score;
+      best = heading;
     }
   }
   return best;
 }
 
-void Director::State::set_headings(GraspTask& task, const std::string& moved) const {
+void Director::State::set_headings(GraspTask& task, const std::string& moved) {
   const auto heading = [&](const Vector3f& foot_S) {
     return task.touch_only ? natural_heading(task.side, foot_S) : clear_heading(task.side, foot_S, moved);
   };
@@ -233,21 +238,24 @@ void Director::State::set_headings(GraspTask& task, const std::string& moved) co
   for (GraspPoint& point : task.path) point.heading_rad = heading(point.foot_S);
 }
 
-// The hand that comes nearest to every point of a task, and how near.
-std::pair<std::size_t, float> Director::State::best_hand(const std::vector<std::size_t>& hands, const GraspTask& task) {
-  std::pair<std::size_t, float> best{right_side, 1e9F};
+// The task for the hand that comes nearest to every point of it, each with the way the hand is turned there; how near.
+std::pair<GraspTask, float> Director::State::with_best_hand(const std::vector<std::size_t>& hands,
+                                                            const GraspTask& task, const std::string& moved) {
+  std::pair<GraspTask, float> best{task, 1e9F};
   for (const std::size_t s : hands) {
+    GraspTask own = task;
+    own.side = s;
+    set_headings(own, moved);
     const Isometry3f X_WP = task.touch_only
                                 ? touch_frame(*figure, anatomy.arms[s].hand, hand_shape("point"), grips[s].X_WP)
                                 : grips[s].X_WP;
+    std::vector<GraspPoint> points = own.path;
+    points.push_back(own.from);
     float gap = 0;
-    std::vector<GraspPoint> points = task.path;
-    points.push_back(task.from);
-    for (GraspPoint& point : points) {
-      point.heading_rad = natural_heading(s, point.foot_S);
+    for (const GraspPoint& point : points) {
       gap = std::max(gap, actor->reach_gap_m(s, holding(X_WP, point, grips[s].closed)));
     }
-    if (gap < best.second - 1e-3F) best = {s, gap};
+    if (gap < best.second - 1e-3F) best = {std::move(own), gap};
     if (gap <= tolerated_gap_m) break;
   }
   return best;
@@ -301,24 +309,23 @@ void Director::State::start_grasp(CommandQueue::Entry& entry, const Grasp& grasp
     const unsigned bit = s == left_side ? part::left_arm : part::right_arm;
     if ((entry.needs.own & free_parts & bit) != 0) hands.push_back(s);
   }
-  auto [best, best_gap] = best_hand(hands, task);
-  // To point at something one need not reach it.
-  const Vector3f aim_S = task.from.foot_S;
-  for (int tenths = 1; task.style == "point" && best_gap > tolerated_gap_m && tenths < 8; ++tenths) {
-    task.from.foot_S = aim_S + (Vector3f(0, -0.15F, 0.15F) - aim_S) * (0.1F * static_cast<float>(tenths));
-    task.path = {task.from};
-    std::tie(best, best_gap) = best_hand(hands, task);
-  }
-  if (best_gap > tolerated_gap_m) {
-    return queue.end(id, FeedbackState::failed, "out_of_reach", 1000.0 * static_cast<double>(best_gap), now_ns);
-  }
-  task.side = best;
-  entry.needs = {best == left_side ? part::left_arm : part::right_arm, part::legs, false};
-  end_idle_clips();
   const float tallest = 2 * static_cast<float>(scene.board.piece_height_m);
   task.clearance_m = tallest + 0.014F;
-  set_headings(task, grasp.piece);
-  GraspMotion motion(task, grips[best], *figure, anatomy.arms[best].hand, actor->arm(best), actor->rest(best));
+  auto [own, gap] = with_best_hand(hands, task, grasp.piece);
+  // To point at something one need not reach it.
+  const Vector3f aim_S = task.from.foot_S;
+  for (int tenths = 1; task.style == "point" && gap > tolerated_gap_m && tenths < 8; ++tenths) {
+    task.from.foot_S = aim_S + (Vector3f(0, -0.15F, 0.15F) - aim_S) * (0.1F * static_cast<float>(tenths));
+    task.path = {task.from};
+    std::tie(own, gap) = with_best_hand(hands, task, grasp.piece);
+  }
+  if (gap > tolerated_gap_m) {
+    return queue.end(id, FeedbackState::failed, "out_of_reach", 1000.0 * static_cast<double>(gap), now_ns);
+  }
+  const std::size_t best = own.side;
+  entry.needs = {best == left_side ? part::left_arm : part::right_arm, part::legs, false};
+  end_idle_clips();
+  GraspMotion motion(own, grips[best], *figure, anatomy.arms[best].hand, actor->arm(best), actor->rest(best));
   grasps[best] =
       RunningGrasp{id, ++sources, grasp.piece, std::move(motion), now_s, GraspPhase::done, false, false, 0, -1};
 }

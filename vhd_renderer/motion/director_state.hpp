@@ -58,12 +58,15 @@ struct RunningFace {
   double start_s = 0;
 };
 
+// Told to say something, the mouth waits for its sound; the words are shown at once.
 struct RunningSpeech {
   std::uint64_t id = 0;
   Say say;
+  SoundToCome to_come;
+  double told_s = 0;
+  std::optional<Utterance> utterance;  // nothing: there is nothing to hear yet
   std::shared_ptr<const Sound> sound;
-  Utterance utterance;
-  double start_s = 0;
+  double start_s = 0;  // of the utterance
 };
 
 struct Director::State {
@@ -74,6 +77,7 @@ struct Director::State {
   std::vector<std::string> morph_names;
   CommandQueue queue;
   Speaker speaker;
+  ClipLibrary library;
 
   Scene scene;
   bool dark = false;  // B is S turned by half a circle
@@ -114,9 +118,10 @@ struct Director::State {
   std::string why_not(const Command& command) const;  // a code; empty: fine
   void submit(const Command& command);
   void start(CommandQueue::Entry& entry, unsigned free_parts);
-  std::pair<std::size_t, float> best_hand(const std::vector<std::size_t>& hands, const GraspTask& task);
-  float clear_heading(std::size_t side, const Eigen::Vector3f& foot_S, const std::string& moved) const;
-  void set_headings(GraspTask& task, const std::string& moved) const;
+  std::pair<GraspTask, float> with_best_hand(const std::vector<std::size_t>& hands, const GraspTask& task,
+                                             const std::string& moved);
+  float clear_heading(std::size_t side, const Eigen::Vector3f& foot_S, const std::string& moved);
+  void set_headings(GraspTask& task, const std::string& moved);
   void end_idle_clips();
   ClipVariation next_variation();
   void start_grasp(CommandQueue::Entry& entry, const Grasp& grasp, unsigned free_parts);
@@ -132,6 +137,7 @@ struct Director::State {
   // A frame.
   void advance_grasp(std::size_t side, ActorInputs& inputs);
   void advance_clips(BodyControls& controls, ActorInputs& inputs);
+  void advance_speech(ActorInputs& inputs);
   void advance_rest(ActorInputs& inputs);
   void measure_grasps();
   Eigen::Isometry3f hand_S(std::size_t side) const;

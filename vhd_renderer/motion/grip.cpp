@@ -63,11 +63,24 @@ GripState unpack(const GripVector& x) {
   return s;
 }
 
-GripState first_guess(const HandParts& hand) {
+// From the wrist to the end of the stretched middle finger.
+float length_of(const Figure& figure, const HandParts& hand) {
+  const Finger& middle = hand.fingers[middle_finger];
+  Vector3f at_joint = figure.joints[at(hand.wrist)].X_HJ.translation();
+  float length = 0;
+  for (const int j : middle.joint) {
+    const Vector3f next = figure.joints[at(j)].X_HJ.translation();
+    length += (next - at_joint).norm();
+    at_joint = next;
+  }
+  return length + (middle.tip_H - at_joint).norm();
+}
+
+GripState first_guess(const Figure& figure, const HandParts& hand) {
   GripState s;
   s.shape = hand_shape("grip");
-  s.centre_W = {0.125F, 0.012F * hand.thumb_side, -0.065F};
-  s.pitch_rad = radians(48);
+  s.centre_W = Vector3f(0.59F, 0.057F * hand.thumb_side, -0.31F) * length_of(figure, hand);
+  s.pitch_rad = radians(34);
   s.roll_rad = radians(8);
   return s;
 }
@@ -95,6 +108,7 @@ struct SkinFit {
   float from_disc_m = 1;        // negative: inside
   float from_neighbours_m = 1;  // tall ones: kings
   float lowest_m = 1;
+  float farthest_m = 0;  // from the middle of the disc, of what is lower than a king
 };
 
 struct GripSearch {
@@ -118,6 +132,7 @@ struct GripSearch {
         const Vector3f p = R_BW * (p_W - s.centre_W) + up;
         fits[f].lowest_m = std::min(fits[f].lowest_m, p.z());
         if (p.z() > 4 * target.height_m) continue;
+        if (p.z() < 2 * target.height_m) fits[f].farthest_m = std::max(fits[f].farthest_m, p.head<2>().norm());
         fits[f].from_disc_m = std::min(fits[f].from_disc_m, outside_cylinder(p, target.radius_m, target.height_m));
         const Vector3f to_nearest(std::abs(p.x()) - target.square_m, std::abs(p.y()) - target.square_m, p.z());
         fits[f].from_neighbours_m =
@@ -147,6 +162,9 @@ struct GripSearch {
     for (const std::size_t f : gripping) at_least(fits[f].lowest_m, tip_over_board_m);
     for (const std::size_t f : {ring_finger, little_finger}) at_least(fits[f].lowest_m, 2.5F * target.height_m);
     for (const SkinFit& one : fits) at_least(one.from_neighbours_m, 0.0015F);
+    // However the hand is turned there are no neighbours in this circle; a hand that keeps to it fits everywhere.
+    const float free_m = std::sqrt(2.F) * target.square_m - target.radius_m;
+    for (const SkinFit& one : fits) r.push_back(250 * std::max(0.F, one.farthest_m - free_m));
     const auto within = [&](float angle, float least, float most) {
       r.push_back(60 * (std::max(0.F, least - angle) + std::max(0.F, angle - most)));
     };
@@ -170,7 +188,9 @@ struct GripSearch {
       for (const float one : v) sum += one * one;
       return sum;
     };
-    for (int round = 0; round < most_rounds && damping < 1e6F; ++round) {
+    constexpr float enough = 1e-4F;  // of the cost: a step that gains less is the last one
+    bool arrived = false;
+    for (int round = 0; round < most_rounds && damping < 1e6F && !arrived; ++round) {
       const auto rows = static_cast<Eigen::Index>(r.size());
       const Eigen::VectorXf e = Eigen::Map<const Eigen::VectorXf>(r.data(), rows);
       Eigen::MatrixXf J(rows, unknowns);
@@ -188,8 +208,10 @@ struct GripSearch {
         damped.diagonal().array() += damping;
         const GripVector next = x + GripVector(damped.ldlt().solve(downhill));
         std::vector<float> there = residuals(next);
-        if (cost(there) >= cost(r)) continue;
+        const float gained = cost(r) - cost(there);
+        if (gained <= 0) continue;
         x = next;
+        arrived = gained < enough * cost(r);
         r = std::move(there);
         damping = std::max(1e-6F, damping * 0.3F);
         break;
@@ -206,12 +228,12 @@ Grip grip_on_piece(const Figure& figure, const HandParts& hand, const GripTarget
   GripSearch search{figure, hand, skin, target};
   // A little above the middle of the rim, so that the tips stay off the board.
   search.contact_m = std::min(0.8F * target.height_m, target.height_m - 0.0015F);
-  search.prior = pack(first_guess(hand));
   // Angles may leave the first guess by some 0.3 rad at the price of a millimetre; the disc's place is free.
   search.prior_weight.setConstant(1.5F);
   search.prior_weight.segment<3>(11).setConstant(1e-3F);
   search.prior_weight.segment<2>(14).setConstant(2.5F);
   search.prior_weight.segment<6>(5).setConstant(2.F);
+  search.prior = pack(first_guess(figure, hand));
   GripVector closed = search.solve(search.prior);
   for (int round = 0; round < 8; ++round) {
     const std::array<SkinFit, 5> fits = search.fit(unpack(closed));

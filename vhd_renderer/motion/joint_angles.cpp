@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "vhd_renderer/motion/curves.hpp"
+#include "vhd_renderer/motion/shoulder.hpp"
 
 namespace counterpart {
 namespace {
@@ -81,13 +82,11 @@ void add_arm(const Anatomy& a, std::size_t s, AngleList& list) {
   const Quaternionf trunk = list.rotation(a.trunk.back());
   const Vector3f upper = trunk.conjugate() * list.bone(limb.root, limb.middle);
   const std::string shoulder = list.name(limb.root);
-  list.add(shoulder + " backwards", std::asin(std::clamp(-upper.y(), -1.F, 1.F)), -90, 65);
-  list.add(shoulder + " across", std::asin(std::clamp(-side * upper.x(), -1.F, 1.F)), -90, 55);
   const Vector3f hinge = list.rotation(limb.middle) * limb.hinge_H;
-  // Against an arm that was swung from hanging the shortest way, its elbow closing forwards.
-  const Vector3f swung = Quaternionf::FromTwoVectors(-Vector3f::UnitZ(), upper) * Vector3f::UnitX();
-  const Vector3f own = trunk.conjugate() * hinge;
-  list.add(shoulder + " inward turn", side * std::atan2(swung.cross(own).dot(upper), swung.dot(own)) * -1, -95, 110);
+  const ShoulderAngles angles = shoulder_angles(upper, trunk.conjugate() * hinge, side);
+  list.add(shoulder + " backwards", angles.backwards_rad, joint_limit::arm_backwards);
+  list.add(shoulder + " across", angles.across_rad, joint_limit::arm_across);
+  list.add(shoulder + " inward turn", angles.inward_rad, joint_limit::arm_inward);
   const Vector3f lower = list.bone(limb.middle, limb.end);
   list.add(list.name(limb.middle) + " flexion", between(list.bone(limb.root, limb.middle), lower), 0, 152);
   const Matrix3f R_SW = list.rotation(limb.end).toRotationMatrix() * arm.hand.R_HW;
@@ -116,7 +115,7 @@ void add_leg(const Anatomy& a, std::size_t s, AngleList& list) {
 }  // namespace
 
 float JointAngle::excess_rad() const {
-  return std::max({0.F, range.least_rad - angle_rad, angle_rad - range.most_rad});
+  return range.excess(angle_rad);
 }
 
 Turn turn_of(const Quaternionf& rotation) {

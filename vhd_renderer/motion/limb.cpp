@@ -22,9 +22,19 @@ float usable_distance(const Limb& limb, float distance) {
   return std::clamp(distance, shortest, longest_share * limb.length_m());
 }
 
+// Of the upper bone's twist joint.
+Vector3f twist_axis(const Figure& figure, const Limb& limb) {
+  return (figure.joints[at(limb.middle)].X_HJ.translation() - figure.joints[at(limb.root_twist)].X_HJ.translation())
+      .normalized();
+}
+
 }  // namespace
 
-Vector3f middle_place(const Limb& limb, const Vector3f& root_S, const Vector3f& end_S, const Vector3f& pole_S) {
+float root_twist_of(const Figure& figure, const Limb& limb, const BodyPose& pose) {
+  return limb.root_twist < 0 ? 0 : twist_about(pose.turn[at(limb.root_twist)], twist_axis(figure, limb));
+}
+
+LimbBend bend_of(const Limb& limb, const Vector3f& root_S, const Vector3f& end_S, const Vector3f& pole_S) {
   Vector3f n = end_S - root_S;
   const float raw = n.norm();
   n = raw > 1e-6F ? Vector3f(n / raw) : Vector3f(0, 0, -1);
@@ -33,7 +43,14 @@ Vector3f middle_place(const Limb& limb, const Vector3f& root_S, const Vector3f& 
   const float h = std::sqrt(std::max(0.F, limb.upper_m * limb.upper_m - a * a));
   Vector3f e = pole_S - n * n.dot(pole_S);
   e = e.squaredNorm() > 1e-8F ? Vector3f(e.normalized()) : n.unitOrthogonal();
-  return root_S + n * a + e * h;
+  LimbBend bend;
+  bend.middle_S = root_S + n * a + e * h;
+  bend.upper_S = (bend.middle_S - root_S).normalized();
+  bend.lower_S = (root_S + n * d - bend.middle_S).normalized();
+  const Vector3f hinge = bend.upper_S.cross(bend.lower_S);
+  bend.hinge_S =
+      hinge.squaredNorm() > 1e-8F ? Vector3f(hinge.normalized()) : Vector3f(bend.upper_S.cross(-pole_S).normalized());
+  return bend;
 }
 
 float solve_limb(const Figure& figure, const Limb& limb, const LimbGoal& goal, BodyPose& pose) {
@@ -44,15 +61,10 @@ float solve_limb(const Figure& figure, const Limb& limb, const LimbGoal& goal, B
   pose.turn[joint(limb.root)].setIdentity();
   update(limb.root);
   const Vector3f root = pose.p_S[joint(limb.root)];
-  Vector3f n = goal.end_S - root;
-  const float raw = n.norm();
-  n = raw > 1e-6F ? Vector3f(n / raw) : Vector3f(0, 0, -1);
-  const Vector3f end = root + n * usable_distance(limb, raw);
-  const Vector3f middle = middle_place(limb, root, end, goal.pole_S);
-  const Vector3f upper = (middle - root).normalized();
-  const Vector3f lower = (end - middle).normalized();
-  Vector3f hinge = upper.cross(lower);
-  hinge = hinge.squaredNorm() > 1e-8F ? Vector3f(hinge.normalized()) : Vector3f(upper.cross(-goal.pole_S).normalized());
+  const LimbBend bend = bend_of(limb, root, goal.end_S, goal.pole_S);
+  const Vector3f& upper = bend.upper_S;
+  const Vector3f& lower = bend.lower_S;
+  const Vector3f& hinge = bend.hinge_S;
 
   // Upper bone: the whole rotation is split into swing and a twist about the bone; part of the twist is left to the
   // twist joint, so that the shoulder's skin does not wring.
@@ -61,14 +73,11 @@ float solve_limb(const Figure& figure, const Limb& limb, const LimbGoal& goal, B
   const Quaternionf above = pose.G[joint(parent)];
   const Quaternionf local = above.conjugate() * whole;
   if (limb.root_twist >= 0) {
-    const float twist = twist_about(local, limb.upper_H);
-    const Quaternionf part(AngleAxisf(-twist * goal.root_twist_share, limb.upper_H));
+    const float twist = goal.root_twist.nearest(goal.root_twist_share * twist_about(local, limb.upper_H));
+    const Quaternionf part(AngleAxisf(-twist, limb.upper_H));
     set_rotation(figure, pose, limb.root, (above * local * part).normalized());
-    const Vector3f bone_H = (figure.joints[joint(limb.middle)].X_HJ.translation() -
-                             figure.joints[joint(limb.root_twist)].X_HJ.translation())
-                                .normalized();
-    set_rotation(figure, pose, limb.root_twist,
-                 (pose.G[joint(limb.root)] * AngleAxisf(twist * goal.root_twist_share, bone_H)).normalized());
+    const Vector3f bone_H = twist_axis(figure, limb);
+    set_rotation(figure, pose, limb.root_twist, (pose.G[joint(limb.root)] * AngleAxisf(twist, bone_H)).normalized());
     update(limb.middle);
   } else {
     set_rotation(figure, pose, limb.root, whole);
@@ -78,12 +87,11 @@ float solve_limb(const Figure& figure, const Limb& limb, const LimbGoal& goal, B
   const Quaternionf fore = align(limb.lower_H, limb.hinge_H, lower, hinge);
   set_rotation(figure, pose, limb.middle, fore);
   if (limb.middle_twist >= 0) {
-    const float twist = twist_about(fore.conjugate() * goal.end_G, limb.lower_H);
+    const float twist = goal.end_twist_share * twist_about(fore.conjugate() * goal.end_G, limb.lower_H);
     const Vector3f bone_H =
         (figure.joints[joint(limb.end)].X_HJ.translation() - figure.joints[joint(limb.middle_twist)].X_HJ.translation())
             .normalized();
-    set_rotation(figure, pose, limb.middle_twist,
-                 (fore * AngleAxisf(twist * goal.end_twist_share, bone_H)).normalized());
+    set_rotation(figure, pose, limb.middle_twist, (fore * AngleAxisf(twist, bone_H)).normalized());
   }
   set_rotation(figure, pose, limb.end, goal.end_G);
   return (pose.p_S[joint(limb.end)] - goal.end_S).norm();

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "vhd_renderer/motion/arm_plan.hpp"
 #include "vhd_renderer/motion/body_controls.hpp"
 #include "vhd_renderer/motion/curves.hpp"
 #include "vhd_renderer/motion/limb.hpp"
@@ -18,8 +19,13 @@ constexpr float lean_spine = radians(38);
 constexpr float lean_twist = radians(20);
 constexpr float lean_clavicle = radians(16);
 
+// And bends over and turns farther once he is off his chair.
+constexpr float rise_pelvis = radians(24);
+constexpr float rise_twist = radians(12);
+
 struct Lean {
   std::array<float, 2> pull{0, 0};  // of each arm; 0..1 together
+  float rise = 0;                   // off the chair, 0..1
 
   float amount() const { return pull[left_side] + pull[right_side]; }
 };
@@ -27,15 +33,15 @@ struct Lean {
 // Root, spine and shoulder girdle.
 void set_trunk(const Figure& figure, const Anatomy& a, const BodyControls& c, const Lean& lean, BodyPose& pose) {
   Turn pelvis = c.pelvis;
-  pelvis.pitch += lean.amount() * lean_pelvis;
+  pelvis.pitch += lean.amount() * lean_pelvis + lean.rise * rise_pelvis;
   const Quaternionf G = rotation_of(c.heading_rad, pelvis);
   const Vector3f hips_H = 0.5F * (figure.joints[at(a.legs[0].limb.root)].X_HJ.translation() +
                                   figure.joints[at(a.legs[1].limb.root)].X_HJ.translation());
   pose.turn[at(a.root)] = G;
-  pose.root_p_S = c.pelvis_S + G * (figure.joints[at(a.root)].X_HJ.translation() - hips_H);
+  pose.root_p_S = c.pelvis_S + c.rise_S * lean.rise + G * (figure.joints[at(a.root)].X_HJ.translation() - hips_H);
   Turn spine = c.spine;
   spine.pitch += lean.amount() * lean_spine;
-  spine.yaw += lean_twist * (lean.pull[right_side] - lean.pull[left_side]);
+  spine.yaw += (lean_twist + rise_twist * lean.rise) * (lean.pull[right_side] - lean.pull[left_side]);
   const Quaternionf each = rotation_of(0, spine * (1.F / static_cast<float>(a.spine.size())));
   for (const int j : a.spine) pose.turn[at(j)] = each;
   update_chain(figure, pose, a.trunk);
@@ -70,8 +76,14 @@ Lean find_lean(const Figure& figure, const Anatomy& a, const BodyControls& c, Bo
     excess_sum += share[s];
   }
   if (excess_sum < 1e-5F) return {};
+  // He leans, then comes off his chair where he can, then leans the rest: nobody lies down on the table before he gets
+  // up.
+  constexpr float early = 0.7F;
+  const bool can_rise = c.rise_S.z() > 0;
   const auto lean_of = [&](float amount) {
-    return Lean{{amount * share[left_side] / excess_sum, amount * share[right_side] / excess_sum}};
+    const float rise = can_rise ? unit_clamp(amount - early) : 0;
+    const float pull = std::min(amount - rise, 1.F) / excess_sum;
+    return Lean{{pull * share[left_side], pull * share[right_side]}, rise};
   };
   const auto missing = [&](float amount) {
     set_trunk(figure, a, c, lean_of(amount), pose);
@@ -79,10 +91,11 @@ Lean find_lean(const Figure& figure, const Anatomy& a, const BodyControls& c, Bo
     for (const std::size_t s : {left_side, right_side}) worst = std::max(worst, reach_of(a, c, pose, s) - wanted[s]);
     return worst;
   };
-  constexpr int parts = 6;
+  constexpr int parts = 6;  // of leaning as of rising
+  const int most = can_rise ? 2 * parts : parts;
   float best = 0;
   float least = missing(0);
-  for (int k = 1; k <= parts && least > 0; ++k) {
+  for (int k = 1; k <= most && least > 0; ++k) {
     const float amount = static_cast<float>(k) / parts;
     const float here = missing(amount);
     if (here >= least) break;
@@ -99,14 +112,19 @@ Lean find_lean(const Figure& figure, const Anatomy& a, const BodyControls& c, Bo
 }
 
 // A trunk does not jump.
-Lean held_back(const Lean& wanted, const std::array<float, 2>& before, float dt_s) {
+Lean held_back(const Lean& wanted, const BodyMemory& before, float dt_s) {
   constexpr float fastest_a_second = 4;
+  const auto held = [&](float to, float from) {
+    return std::clamp(to, from - fastest_a_second * dt_s, from + fastest_a_second * dt_s);
+  };
   Lean lean = wanted;
-  for (const std::size_t s : {left_side, right_side}) {
-    lean.pull[s] = std::clamp(lean.pull[s], before[s] - fastest_a_second * dt_s, before[s] + fastest_a_second * dt_s);
-  }
+  for (const std::size_t s : {left_side, right_side}) lean.pull[s] = held(lean.pull[s], before.lean[s]);
+  lean.rise = held(lean.rise, before.rise);
   return lean;
 }
+
+constexpr float roll_rise_m = 0.0024F;     // of the toes' joint ...
+constexpr float roll_rad = radians(2.5F);  // ... while the heel comes up so far
 
 void set_legs(const Figure& figure, const Anatomy& a, const BodyControls& c, SolvedBody& solved) {
   BodyPose& pose = solved.pose;
@@ -117,11 +135,14 @@ void set_legs(const Figure& figure, const Anatomy& a, const BodyControls& c, Sol
                         AngleAxisf(-foot.pitch_rad, Vector3f::UnitX()));
     const Vector3f ankle_H = figure.joints[at(leg.limb.end)].X_HJ.translation();
     LimbGoal goal;
-    // The foot rolls over a place between its toes' joint and the sole under it, so that neither slides far.
+    // The foot rolls over its toes' joint. What of its sole lies under that would slide: so the joint comes up a little
+    // first, and the weight goes on to the tips of the toes.
     const Vector3f joint_H =
         leg.toe >= 0 ? Vector3f(figure.joints[at(leg.toe)].X_HJ.translation()) : Vector3f(leg.ball_H);
-    const Vector3f pivot_H = 0.5F * (joint_H + leg.ball_H);
-    goal.end_S = foot.ball_S + Vector3f(0, 0, pivot_H.z() - leg.ball_H.z()) + G * (ankle_H - pivot_H);
+    const bool rolls = leg.toe >= 0 && leg.toe_length_m > 0.02F;
+    const float heel_up = std::max(0.F, foot.pitch_rad);
+    const float up = rolls ? roll_rise_m * minimum_jerk(heel_up / roll_rad) : 0;
+    goal.end_S = foot.ball_S + Vector3f(0, 0, joint_H.z() - leg.ball_H.z() + up) + G * (ankle_H - joint_H);
     goal.end_G = G;
     const float side = s == right_side ? 1.F : -1.F;
     const float knee_heading = 0.5F * (foot.heading_rad + c.heading_rad);
@@ -132,9 +153,8 @@ void set_legs(const Figure& figure, const Anatomy& a, const BodyControls& c, Sol
     }
     solved.foot_gap_m[s] = solve_limb(figure, leg.limb, goal, pose);
     // Toes stay on the floor while the heel comes up.
-    for (const int toe : leg.toes) {
-      pose.turn[at(toe)] = AngleAxisf(std::max(0.F, foot.pitch_rad), Vector3f::UnitX());
-    }
+    const float on_tips = rolls ? std::asin(up / leg.toe_length_m) : 0;
+    for (const int toe : leg.toes) pose.turn[at(toe)] = AngleAxisf(heel_up - on_tips, Vector3f::UnitX());
   }
 }
 
@@ -148,7 +168,7 @@ float before_him(float yaw) {
   return 1 - minimum_jerk((std::abs(yaw) - beside) / (pi_f - beside));
 }
 
-void set_head(const Figure& figure, const Anatomy& a, const BodyControls& c, BodyPose& pose) {
+void set_head(const Figure& figure, const Anatomy& a, const BodyControls& c, const Lean& lean, BodyPose& pose) {
   const Quaternionf trunk = pose.G[at(a.spine.back())];
   const Vector3f neck = pose.p_S[at(a.spine.back())];
   const Vector3f head_H =
@@ -157,7 +177,10 @@ void set_head(const Figure& figure, const Anatomy& a, const BodyControls& c, Bod
   Turn look = direction_turn(trunk.conjugate() * (c.head_gaze_S - eyes));
   look.yaw = soft_limit(std::abs(look.yaw), 0.6F, 1.2F) * (look.yaw < 0 ? -1.F : 1.F) * before_him(look.yaw);
   look.pitch = std::clamp(look.pitch, -radians(42), radians(42));
-  const Turn turn = look * c.head_share + c.head;
+  Turn turn = look * c.head_share + c.head;
+  // Bent over the table he keeps his face out of it.
+  turn.pitch -= radians(12) * lean.amount() + radians(20) * lean.rise;
+  turn.pitch = std::max(turn.pitch, -radians(52));
   const Quaternionf each = rotation_of(0, turn * (1.F / static_cast<float>(a.neck.size())));
   for (const int j : a.neck) pose.turn[at(j)] = each;
   update_chain(figure, pose, a.neck);
@@ -175,91 +198,73 @@ void set_head(const Figure& figure, const Anatomy& a, const BodyControls& c, Bod
   }
 }
 
-// How an elbow is lifted out of its natural place: about the line from shoulder to wrist, radians.
-struct Swivel {
-  Vector3f natural;  // direction of the elbow that hangs down and a little outward
-  Vector3f line;     // unit, shoulder to wrist
-  float side;
-
-  Vector3f turned(float angle) const { return AngleAxisf(-side * angle, line) * natural; }
-  float of(const Vector3f& elbow) const {
-    const Vector3f a = natural - line * line.dot(natural);
-    const Vector3f b = elbow - line * line.dot(elbow);
-    return -side * std::atan2(a.cross(b).dot(line), a.dot(b));
+// Where finger tips and knuckles are at their lowest, over the wrist.
+float lowest_of(const Figure& figure, const HandParts& hand, const HandShape& shape, const Quaternionf& R_SW) {
+  float lowest = 0;
+  for (std::size_t f = 0; f < hand.fingers.size(); ++f) {
+    lowest = std::min(lowest, (R_SW * fingertip_W(figure, hand, shape, f).tip).z());
   }
-};
-
-// The least lift, from `low` on, that keeps elbow and forearm out of the table.
-float clear_of_table(const Anatomy& a, const BodyControls& c, std::size_t s, const Vector3f& shoulder,
-                     const Swivel& swivel, float low) {
-  const ArmGoal& goal = c.arms[s];
-  // A hand below the table top is under the table, and so may its arm be.
-  const float above = unit_clamp((goal.wrist_S.z() - c.table_z_m + 0.01F) / 0.03F);
-  const auto clearance = [&](float lift) {
-    const Vector3f elbow = middle_place(a.arms[s].limb, shoulder, goal.wrist_S, swivel.turned(lift));
-    float least = 1;
-    for (const float share : {0.F, 0.25F, 0.5F, 0.75F}) {  // of the forearm, which is thinner towards the wrist
-      const Vector3f p = elbow + (goal.wrist_S - elbow) * share;
-      // The table begins softly, so that the elbow does not jump at its edge.
-      const float over = above * unit_clamp((p.y() - c.table_edge_y_m + 0.07F) / 0.07F);
-      least = std::min(least, p.z() - (c.table_z_m + lerp(0.06F, 0.035F, share)) + (1 - over) * 0.5F);
-    }
-    return least;
-  };
-  if (clearance(low) >= 0) return low;
-  constexpr float most = radians(80);
-  float high = std::max(low, most);
-  for (int round = 0; round < 12; ++round) {
-    const float middle = 0.5F * (low + high);
-    (clearance(middle) < 0 ? low : high) = middle;
-  }
-  return high;
+  return lowest;
 }
 
-// Where the elbow points: hanging, lifted by what the goal says or the table asks for, never in a jump. `solved` still
-// holds the frame before below the shoulder.
-Vector3f elbow_pole(const Anatomy& a, const BodyControls& c, const SolvedBody& solved, std::size_t s) {
-  const Limb& arm = a.arms[s].limb;
-  const ArmGoal& goal = c.arms[s];
-  const Vector3f shoulder = solved.pose.p_S[at(arm.root)];
-  const float side = s == right_side ? 1.F : -1.F;
-  const Quaternionf heading(AngleAxisf(c.heading_rad, Vector3f::UnitZ()));
-  const Swivel swivel{heading * Vector3f(side * 0.62F, -0.35F, -0.75F), (goal.wrist_S - shoulder).normalized(), side};
-  float lift = clear_of_table(a, c, s, shoulder, swivel, goal.swivel_rad);
-  if (solved.before && c.dt_s > 0) {
-    constexpr float fastest_rad_s = 4.4F;
-    const Vector3f hinge_before = solved.pose.G[at(arm.middle)] * arm.hinge_H;
-    const float before = swivel.of(swivel.line.cross(hinge_before));
-    lift = std::clamp(lift, before - fastest_rad_s * c.dt_s, before + fastest_rad_s * c.dt_s);
-  }
-  return swivel.turned(lift);
+// A hand that its wrist does not let lie as it should would dip into what it lies on: by so much it has to be lifted.
+float dip_of(const Figure& figure, const HandParts& hand, const BodyControls& c, const ArmGoal& goal,
+             const Quaternionf& R_SW) {
+  if (goal.wrist_S.y() < c.table_edge_y_m || R_SW.angularDistance(goal.R_SW) < radians(0.5F)) return 0;
+  const float wanted = lowest_of(figure, hand, goal.shape, goal.R_SW);
+  const float over_table = goal.wrist_S.z() + wanted - c.table_z_m;
+  const float near = 1 - minimum_jerk((over_table - 0.03F) / 0.04F);
+  const float inside = unit_clamp((goal.wrist_S.y() - c.table_edge_y_m) / 0.03F);
+  return near * inside * std::max(0.F, wanted - lowest_of(figure, hand, goal.shape, R_SW));
 }
 
-// Returns how the wrist is bent.
-WristAngles set_arm(const Figure& figure, const Anatomy& a, const BodyControls& c, std::size_t s, SolvedBody& solved) {
-  const ArmGoal& goal = c.arms[s];
+// One arm, its hand as its goal says as far as the wrist lets it. Returns how the hand is turned.
+Quaternionf set_arm(const Figure& figure, const Anatomy& a, const BodyControls& c, const ArmGoal& goal, std::size_t s,
+                    const ArmMemory* before, SolvedBody& solved, ArmMemory& memory) {
+  constexpr float fastest_twist_rad_s = 4;
   const HandParts& hand = a.arms[s].hand;
+  const Limb& arm = a.arms[s].limb;
+  const ArmPlan plan = plan_arm(a, c, goal, solved.pose, s, before);
   LimbGoal limb;
-  limb.end_S = goal.wrist_S;
+  limb.end_S = plan.wrist_S;
   limb.end_G = (goal.R_SW * Quaternionf(hand.R_HW).conjugate()).normalized();
-  limb.pole_S = elbow_pole(a, c, solved, s);
-  const float wrist_gap_m = solve_limb(figure, a.arms[s].limb, limb, solved.pose);
+  limb.pole_S = plan.pole_S;
+  if (before != nullptr && c.dt_s > 0) {
+    limb.root_twist = {before->twist_rad - fastest_twist_rad_s * c.dt_s,
+                       before->twist_rad + fastest_twist_rad_s * c.dt_s};
+  }
+  const float limb_gap_m = solve_limb(figure, arm, limb, solved.pose);
 
   // A hand goes only where its wrist lets it; then the forearm is solved again under it.
   const BodyPose& pose = solved.pose;
-  const Limb& arm = a.arms[s].limb;
   const Vector3f hinge = pose.G[at(arm.middle)] * arm.hinge_H;
   const Vector3f lower = (pose.p_S[at(arm.end)] - pose.p_S[at(arm.middle)]).normalized();
   const WristAngles wanted = wrist_angles(hinge, lower, goal.R_SW.toRotationMatrix(), hand.thumb_side);
-  const WristAngles legal =
-      solved.before ? held_back(wanted, solved.before->wrists[s], c.dt_s) : held_back(wanted, wanted, 0);
-  const Quaternionf R_SW(hand_frame(hinge, lower, legal, hand.thumb_side));
-  constexpr float palm_m = 0.12F;  // from the wrist to what the hand holds
-  solved.arm_gap_m[s] = wrist_gap_m + palm_m * R_SW.angularDistance(goal.R_SW);
+  memory = plan.memory;
+  memory.bend = before != nullptr ? held_back(wanted, before->bend, c.dt_s) : held_back(wanted, wanted, 0);
+  const Quaternionf R_SW(hand_frame(hinge, lower, memory.bend, hand.thumb_side));
   limb.end_G = (R_SW * Quaternionf(hand.R_HW).conjugate()).normalized();
   solve_limb(figure, arm, limb, solved.pose);
+  memory.twist_rad = root_twist_of(figure, arm, solved.pose);
+  constexpr float palm_m = 0.12F;  // from the wrist to what the hand holds
+  // A strained shoulder does not get there either: by about an arm's length for each radian.
+  solved.arm_gap_m[s] = limb_gap_m + (plan.wrist_S - c.arms[s].wrist_S).norm() + arm.length_m() * plan.strain_rad +
+                        palm_m * R_SW.angularDistance(goal.R_SW);
+  return R_SW;
+}
+
+ArmMemory set_arm(const Figure& figure, const Anatomy& a, const BodyControls& c, std::size_t s, SolvedBody& solved) {
+  const HandParts& hand = a.arms[s].hand;
+  const ArmMemory* before = solved.before ? &solved.before->arms[s] : nullptr;
+  ArmGoal goal = c.arms[s];
+  ArmMemory memory;
+  const Quaternionf R_SW = set_arm(figure, a, c, goal, s, before, solved, memory);
+  if (const float dip = dip_of(figure, hand, c, goal, R_SW); dip > 0) {
+    goal.wrist_S.z() += dip;
+    set_arm(figure, a, c, goal, s, before, solved, memory);
+  }
   apply(figure, hand, goal.shape, solved.pose);
-  return legal;
+  return memory;
 }
 
 }  // namespace
@@ -273,13 +278,14 @@ void solve_body(const Figure& figure, const Anatomy& a, const BodyControls& c, S
   BodyPose& pose = solved.pose;
   if (pose.turn.size() != figure.joints.size()) pose = bind_pose(figure);
   Lean lean = find_lean(figure, a, c, pose);
-  if (solved.before && c.dt_s > 0) lean = held_back(lean, solved.before->lean, c.dt_s);
+  if (solved.before && c.dt_s > 0) lean = held_back(lean, *solved.before, c.dt_s);
   set_trunk(figure, a, c, lean, pose);
   set_legs(figure, a, c, solved);
-  set_head(figure, a, c, pose);
+  set_head(figure, a, c, lean, pose);
   BodyMemory memory;
   memory.lean = lean.pull;
-  for (const std::size_t s : {left_side, right_side}) memory.wrists[s] = set_arm(figure, a, c, s, solved);
+  memory.rise = lean.rise;
+  for (const std::size_t s : {left_side, right_side}) memory.arms[s] = set_arm(figure, a, c, s, solved);
   solved.before = memory;
   update(figure, pose);
 }

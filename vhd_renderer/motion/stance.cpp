@@ -29,7 +29,7 @@ Quaternionf hand_rotation(const Vector3f& fingers, const Vector3f& palm) {
 // The hand lies on the table before the board, its palm down, pointing inwards.
 Quaternionf resting_rotation(std::size_t side) {
   const float s = side == right_side ? 1.F : -1.F;
-  return hand_rotation(Vector3f(-s * 0.80F, 0.60F, -0.06F), Vector3f(-s * 0.10F, 0, -1));
+  return hand_rotation(Vector3f(-s * 0.92F, 0.38F, -0.06F), Vector3f(-s * 0.10F, 0, -1));
 }
 
 FootGoal seated_foot(const Home& home, std::size_t side, const Anatomy& anatomy) {
@@ -164,6 +164,14 @@ void stand(const Place& place, const Home& home, const Anatomy& a, BodyControls&
 void sit(const Home& home, const Anatomy& a, BodyControls& c) {
   float seatedness = 1;
   sitting_moment(lower_s + scoot_s, home, a, c, seatedness);
+  // Up, as far as his legs let him with his feet where they are.
+  constexpr float forward_m = 0.06F;
+  const LegParts& leg = a.legs[0];
+  const float ahead = home.seat_feet[left_side].p_S.y() - home.seat_y - forward_m;
+  const float reach = 0.97F * leg.limb.length_m();
+  const float legs_up = std::sqrt(std::max(0.F, reach * reach - ahead * ahead)) + leg.ankle_height_m;
+  const float stands = lerp(home.seat_hip_z - home.floor_z, standing_hip_height(a), 0.95F);
+  c.rise_S = {0, forward_m, std::max(0.F, std::min(legs_up, stands) - (home.seat_hip_z - home.floor_z))};
 }
 
 ArmGoal hanging_arm(const Anatomy& a, const BodyControls& c, std::size_t side, float swing) {

@@ -12,6 +12,8 @@ struct AngleRange {
   float most_rad = 0;
 
   float nearest(float angle_rad) const { return std::clamp(angle_rad, least_rad, most_rad); }
+  // How far beyond it an angle is; 0 inside.
+  float excess(float angle_rad) const { return std::max({0.F, least_rad - angle_rad, angle_rad - most_rad}); }
 };
 
 // Active ranges of healthy adults, rounded outwards (Kapandji, The Physiology of the Joints).

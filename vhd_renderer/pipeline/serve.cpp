@@ -17,6 +17,7 @@
 #include "protocol/transport/jpeg.hpp"
 #include "protocol/vocabulary/pose_eigen.hpp"
 #include "vhd_renderer/body/build_character.hpp"
+#include "vhd_renderer/motion/clip_file.hpp"
 #include "vhd_renderer/motion/director.hpp"
 #include "vhd_renderer/output/output.hpp"
 #include "vhd_renderer/output/web_mirror.hpp"
@@ -34,13 +35,17 @@ constexpr std::int64_t kWaitNs = 100'000'000;  // how often a waiting daemon loo
 
 class RendererDaemon {
  public:
-  RendererDaemon(const RendererOptions& options, std::unique_ptr<Endpoint> tracker, DirectorPort port, Figure figure)
+  RendererDaemon(const RendererOptions& options, std::unique_ptr<Endpoint> tracker, DirectorPort port, Figure figure,
+                 ClipLibrary clips)
       : options_(options),
         tracker_(std::move(tracker)),
         port_(std::move(port)),
         pairing_(options.lockstep ? PairingPolicy::every : PairingPolicy::newest),
         figure_(std::move(figure)),
-        director_(figure_, espeak_speaker(voice_of(options.character))) {}
+        director_(figure_,
+                  espeak_speaker(voice_of(options.character),
+                                 options.lockstep ? Speaking::at_once : Speaking::in_the_background),
+                  std::move(clips)) {}
 
   [[nodiscard]] Result<void> open_outputs();
   [[nodiscard]] Result<void> run();
@@ -297,11 +302,14 @@ Result<std::unique_ptr<Endpoint>> open_director_port(const RendererOptions& opti
 Result<void> serve(const RendererOptions& options) {
   auto figure = figure_of(options.character);
   if (!figure) return tl::make_unexpected(figure.error());
+  auto clips = clips_with_folder(options.clips);
+  if (!clips) return tl::make_unexpected(clips.error());
   auto port = open_director_port(options);
   if (!port) return tl::make_unexpected(port.error());
   auto tracker = connect_tcp(options.tracker, options.link, options.patience_ns);
   if (!tracker) return tl::make_unexpected(tracker.error());
-  RendererDaemon daemon(options, std::move(*tracker), DirectorPort(std::move(*port)), std::move(*figure));
+  RendererDaemon daemon(options, std::move(*tracker), DirectorPort(std::move(*port)), std::move(*figure),
+                        std::move(*clips));
   if (auto opened = daemon.open_outputs(); !opened) return opened;
   return daemon.run();
 }

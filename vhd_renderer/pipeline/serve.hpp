@@ -16,6 +16,7 @@ struct RendererOptions {
   std::string listen;  // HOST:PORT for directors who command the human without a tracker; empty: none
   LinkOptions link;
   std::string character = "default";  // name of a character, a GLB file, or "mannequin"
+  std::string clips;                  // folder with more clips; empty: those made here
   std::vector<std::string> outputs;   // FILE.mp4 or a folder
   std::string web;                    // HOST:PORT of the mirror page; empty: none
   CompositeOptions composite;

@@ -7,6 +7,6 @@ class App;
 
 namespace counterpart {
 
-void add_clips(CLI::App& app);
+void add_clips(CLI::App& app, int& exit_code);
 
 }  // namespace counterpart

@@ -14,6 +14,7 @@
 #include "protocol/vocabulary/pose_eigen.hpp"
 #include "vhd_renderer/body/build_character.hpp"
 #include "vhd_renderer/composite/composite.hpp"
+#include "vhd_renderer/motion/clip_file.hpp"
 #include "vhd_renderer/motion/director.hpp"
 #include "vhd_renderer/output/output.hpp"
 #include "vhd_renderer/programs/backdrop.hpp"
@@ -34,6 +35,7 @@ struct PlayOptions {
   std::vector<double> look_at;
   double zoom = ViewPoint{}.zoom;
   std::string opponent;
+  std::string clips;
   bool mute = false;
   double fps = 25;
   double seconds = 0;  // 0: until every command has ended
@@ -144,6 +146,8 @@ Result<void> play(const PlayOptions& options) {
     figure = figure_of("mannequin");
   }
   if (!figure) return tl::make_unexpected(figure.error());
+  auto clips = clips_with_folder(options.clips);
+  if (!clips) return tl::make_unexpected(clips.error());
   std::ofstream trace;
   if (!options.trace.empty()) {
     trace.open(options.trace);
@@ -157,7 +161,8 @@ Result<void> play(const PlayOptions& options) {
     film.emplace(std::move(*opened));
   }
 
-  Director director(*figure, options.mute ? Speaker{} : espeak_speaker(voice_of(opponent)));
+  Director director(*figure, options.mute ? Speaker{} : espeak_speaker(voice_of(opponent), Speaking::at_once),
+                    std::move(*clips));
   Scene shown;
   const auto limit = static_cast<std::int64_t>((options.seconds > 0 ? options.seconds : 3600) * options.fps);
   std::size_t next = 0;
@@ -224,6 +229,7 @@ void add_play(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--opponent", options->opponent,
                       "which human: default, ines, kenji, amara, mannequin, a GLB file");
+  command->add_option("--clips", options->clips, "a folder with more clips: .bvh, .gltf, .glb, .json");
   command->add_flag("--mute", options->mute, "what is said is only shown, not spoken");
   command->add_option("--fps", options->fps, "frames a second")->check(CLI::Range(1.0, 240.0))->capture_default_str();
   command->add_option("--seconds", options->seconds, "how long; 0: until every command has ended")

@@ -27,6 +27,7 @@ void add_serve(CLI::App& app, int& exit_code) {
   command->add_option("--output", renderer.outputs, "FILE.mp4 or a folder for pictures; may be given several times");
   command->add_option("--character", renderer.character, "a character's name, a GLB file, or mannequin")
       ->capture_default_str();
+  command->add_option("--clips", renderer.clips, "a folder with more clips: .bvh, .gltf, .glb, .json");
   command->add_option("--blend", arguments->blend, "alpha, or black-key as in the paper")
       ->check(CLI::IsMember({"alpha", "black-key"}))
       ->capture_default_str();

@@ -4,9 +4,13 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <condition_variable>
 #include <csignal>
 #include <cstring>
+#include <deque>
 #include <map>
+#include <mutex>
+#include <thread>
 #include <utility>
 
 #include <fcntl.h>
@@ -26,7 +30,9 @@ namespace {
 constexpr std::size_t longest_text = 4000;
 constexpr std::size_t most_bytes = 32U << 20U;  // ten minutes of speech
 constexpr std::chrono::seconds patience{5};
-constexpr std::size_t remembered = 200;  // sentences
+constexpr std::chrono::milliseconds glance{50};  // how often it is seen whether the sound is still wanted
+constexpr std::size_t longest_queue = 32;        // sentences; what is beyond it is not spoken
+constexpr std::size_t remembered = 200;          // sentences
 
 class Descriptor {
  public:
@@ -54,15 +60,15 @@ tl::unexpected<Error> trouble(const std::string& what) {
   return failure(ErrorCode::unavailable, "espeak-ng cannot speak: " + what);
 }
 
-// All that comes until the end; empty if it takes too long or gets too much.
-std::string read_all(int fd) {
+// All that comes until the end; empty if it takes too long, gets too much, or is not wanted any more.
+std::string read_all(int fd, const std::stop_token& stop) {
   const auto until = std::chrono::steady_clock::now() + patience;
   std::string bytes;
   std::array<char, 65536> chunk;
   for (;;) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
+    if (stop.stop_requested() || std::chrono::steady_clock::now() >= until) return {};
     pollfd one{fd, POLLIN, 0};
-    if (left.count() <= 0 || poll(&one, 1, static_cast<int>(left.count())) == 0) return {};
+    if (poll(&one, 1, static_cast<int>(glance.count())) == 0) continue;
     const ssize_t got = read(fd, chunk.data(), chunk.size());
     if (got == 0) return bytes;
     if (got < 0 && errno == EINTR) continue;
@@ -74,7 +80,7 @@ std::string read_all(int fd) {
 }  // namespace
 
 Result<Sound> speak(const std::string& text, const std::string& language, const std::string& variant,
-                    const std::string& program) {
+                    const std::string& program, const std::stop_token& stop) {
   if (text.size() > longest_text) return failure(ErrorCode::limit_exceeded, "a text of over 4000 bytes is not spoken");
   if (language.empty() || !plain_name(language) || !plain_name(variant)) {
     return failure(ErrorCode::invalid_argument,
@@ -98,7 +104,7 @@ Result<Sound> speak(const std::string& text, const std::string& language, const 
   posix_spawn_file_actions_destroy(&actions);
   if (spawned != 0) return trouble(std::string(std::strerror(spawned)) + "; install the Debian package espeak-ng");
   to.close();
-  const std::string bytes = read_all(from.get());
+  const std::string bytes = read_all(from.get(), stop);
   if (bytes.empty()) kill(child, SIGKILL);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
@@ -107,23 +113,85 @@ Result<Sound> speak(const std::string& text, const std::string& language, const 
   return decode_wav(bytes);
 }
 
-Speaker espeak_speaker(const std::string& variant) {
-  struct Memory {
-    std::map<std::pair<std::string, std::string>, std::shared_ptr<const Sound>> said;
-    bool warned = false;
-  };
-  return [variant, memory = std::make_shared<Memory>()](const std::string& text, const std::string& language) {
+namespace {
+
+// One voice and what it has said.
+class Memory {
+ public:
+  Memory(std::string variant, std::string program) : variant_(std::move(variant)), program_(std::move(program)) {}
+
+  std::shared_ptr<const Sound> say(const std::string& text, const std::string& language,
+                                   const std::stop_token& stop = {}) {
     const std::pair key(language, text);
-    if (const auto found = memory->said.find(key); found != memory->said.end()) return found->second;
+    if (const auto found = said_.find(key); found != said_.end()) return found->second;
     std::shared_ptr<const Sound> sound;
-    if (auto spoken = speak(text, language, variant); spoken) {
+    if (auto spoken = speak(text, language, variant_, program_, stop); spoken) {
       sound = std::make_shared<Sound>(std::move(*spoken));
-    } else if (!std::exchange(memory->warned, true)) {
+    } else if (!stop.stop_requested() && !std::exchange(warned_, true)) {
       spdlog::warn("{}; what is said is shown as a subtitle only", spoken.error().message);
     }
-    if (memory->said.size() >= remembered) memory->said.clear();
-    memory->said.emplace(key, sound);
+    if (said_.size() >= remembered) said_.clear();
+    said_.emplace(key, sound);
     return sound;
+  }
+
+ private:
+  std::string variant_;
+  std::string program_;
+  std::map<std::pair<std::string, std::string>, std::shared_ptr<const Sound>> said_;
+  bool warned_ = false;
+};
+
+// Speaks one sentence after the other while others go on with their work.
+class VoiceThread {
+ public:
+  explicit VoiceThread(Memory memory) : memory_(std::move(memory)) {
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  }
+
+  SoundToCome say(const std::string& text, const std::string& language) {
+    const std::lock_guard lock(mutex_);
+    if (waiting_.size() >= longest_queue) return ready_sound(nullptr);
+    waiting_.push_back({text, language, {}});
+    arrived_.notify_one();
+    return waiting_.back().promise.get_future().share();
+  }
+
+ private:
+  struct Sentence {
+    std::string text;
+    std::string language;
+    std::promise<std::shared_ptr<const Sound>> promise;
+  };
+
+  void run(const std::stop_token& stop) {
+    for (;;) {
+      std::unique_lock lock(mutex_);
+      if (!arrived_.wait(lock, stop, [this] { return !waiting_.empty(); })) return;
+      Sentence next = std::move(waiting_.front());
+      waiting_.pop_front();
+      lock.unlock();
+      next.promise.set_value(memory_.say(next.text, next.language, stop));
+    }
+  }
+
+  Memory memory_;  // the thread's
+  std::mutex mutex_;
+  std::condition_variable_any arrived_;
+  std::deque<Sentence> waiting_;
+  std::jthread thread_;  // ends before what it works with
+};
+
+}  // namespace
+
+Speaker espeak_speaker(const std::string& variant, Speaking speaking, const std::string& program) {
+  Memory memory(variant, program);
+  if (speaking == Speaking::in_the_background) {
+    return [thread = std::make_shared<VoiceThread>(std::move(memory))](
+               const std::string& text, const std::string& language) { return thread->say(text, language); };
+  }
+  return [memory = std::make_shared<Memory>(std::move(memory))](const std::string& text, const std::string& language) {
+    return ready_sound(memory->say(text, language));
   };
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "game_controller/game/lost_pieces.hpp"
 #include "game_controller/rules/record.hpp"
 #include "tests/game_controller/game/simulated_game.hpp"
 
@@ -320,6 +321,65 @@ TEST(Game, the_wrong_piece_taken_off_is_named) {
   ASSERT_TRUE(play.until(EventKind::illegal_move));
   EXPECT_EQ(play.events.back().code, "extra_piece_removed");
   EXPECT_EQ(play.events.back().squares, std::vector<int>{7});
+}
+
+TEST(Game, what_the_virtual_player_loses_he_takes_off_and_crowns_his_king_with) {
+  Play play(options_from("B:W7,28:B16,22"), 5);
+  std::vector<std::pair<std::string, Point3>> all;  // every piece that a hand was told to take, and where to
+  for (int frame = 0; frame < 400; ++frame) {
+    for (const Command& command : play.step().commands) {
+      const auto* grasp = std::get_if<Grasp>(&command.action);
+      if (grasp != nullptr && !grasp->piece.empty()) all.emplace_back(grasp->piece, grasp->path_B.back());
+    }
+    play.player_acts = play.player_acts && play.position().turn == Side::dark;
+  }
+  ASSERT_EQ(all.size(), 3u) << "the lost man, the move, the crown";
+  const Point3 beside = place_beside_board_B(play.options.board, Side::light, 0);
+  EXPECT_EQ(all[0], (std::pair<std::string, Point3>("light_28", beside)));
+  EXPECT_FALSE(cell_at_B(beside, play.options.board));
+  EXPECT_EQ(all[1].first, "light_7") << "he moves when his hands are free again";
+  EXPECT_EQ(all[2].first, "light_28");
+  EXPECT_NEAR(all[2].second[0], all[1].second[0], 1e-9) << "on top of the man";
+  EXPECT_NEAR(all[2].second[1], all[1].second[1], 1e-9);
+  EXPECT_NEAR(all[2].second[2], play.options.board.piece_height_m, 1e-9);
+  EXPECT_EQ(play.renderer.pieces.size(), 1u) << "in the end there is a king, and nothing beside the board";
+  EXPECT_EQ(play.renderer.pieces.count("light_7"), 1u);
+  EXPECT_EQ(play.renderer.kings, 1);
+}
+
+TEST(Game, a_king_without_lost_men_is_crowned_without_hands) {
+  Play play(options_from("W:W7,38:B26,46"), 5);
+  play.player_acts = false;
+  play.player_removes = false;
+  ASSERT_TRUE(play.until(EventKind::move));
+  for (int i = 0; i < 60; ++i) play.step();
+  for (const auto& [name, p_B] : play.renderer.pieces) EXPECT_NEAR(p_B[2], 0, 1e-9) << name;
+}
+
+TEST(Game, a_captured_king_lies_beside_the_board_as_two_pieces) {
+  LostPieces lost(BoardGeometry{}, Side::light);
+  lost.capture("light_31", true, 22);
+  for (LostPiece& piece : lost.all()) {
+    if (std::exchange(piece.to_carry, false)) piece.grasp = 7;
+  }
+  std::vector<ScenePiece> shown;
+  lost.show(shown);
+  ASSERT_EQ(shown.size(), 1u) << "still a king on its square";
+  EXPECT_TRUE(shown[0].king);
+  EXPECT_EQ(shown[0].p_B, centre_of_square_B(22, BoardGeometry{}));
+  EXPECT_TRUE(lost.ended(7));
+  EXPECT_FALSE(lost.ended(7));
+  shown.clear();
+  lost.show(shown);
+  ASSERT_EQ(shown.size(), 2u);
+  EXPECT_FALSE(shown[0].king || shown[1].king);
+  EXPECT_NEAR(shown[1].p_B[2] - shown[0].p_B[2], BoardGeometry{}.piece_height_m, 1e-9);
+  lost.crown("light_35", 3);
+  lost.settle();
+  shown.clear();
+  lost.show(shown);
+  ASSERT_EQ(shown.size(), 1u) << "the upper one is on the new king";
+  EXPECT_EQ(shown[0].name, "light_31");
 }
 
 TEST(Game, a_failed_grasp_is_tried_again_and_then_the_piece_is_set) {

@@ -2,6 +2,7 @@
 // frames in which his hand covers the board; a renderer that answers commands; an engine that picks moves by seed.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -62,6 +63,7 @@ struct Renderer {
   std::map<std::string, Point3> pieces;
   std::map<std::uint64_t, std::pair<Command, int>> running;  // and the frames it still takes
   std::vector<std::string> verbs;                            // what was told, in order
+  int kings = 0;                                             // in the last scene
   std::uint64_t last_id = 0;
   bool ids_grow = true;
   int fail_grasps = 0;  // so many of the next grasps fail
@@ -69,7 +71,9 @@ struct Renderer {
   void receive(const GameOutputs& out) {
     if (out.scene) {
       pieces.clear();
+      kings = 0;
       for (const ScenePiece& piece : out.scene->pieces) {
+        kings += !piece.real && piece.king ? 1 : 0;
         if (!piece.real) pieces[piece.name] = piece.p_B;
       }
     }
@@ -110,10 +114,20 @@ struct Renderer {
     return feedback;
   }
 
-  // Squares of the virtual pieces, by what is drawn.
+  // A hand is about to take it off the board.
+  bool is_leaving(const std::string& name, const BoardGeometry& board) const {
+    return std::any_of(running.begin(), running.end(), [&](const auto& entry) {
+      const auto* grasp = std::get_if<Grasp>(&entry.second.first.action);
+      return grasp != nullptr && grasp->piece == name && !cell_at_B(grasp->path_B.back(), board);
+    });
+  }
+
+  // Squares of the virtual pieces, by what is drawn; without those that have been captured and are still to be taken
+  // off.
   Bits drawn(const BoardGeometry& board) const {
     Bits bits = 0;
     for (const auto& [name, p_B] : pieces) {
+      if (is_leaving(name, board)) continue;
       const auto cell = cell_at_B(p_B, board);
       const auto square = cell ? square_of_cell(*cell, board.squares) : std::nullopt;
       if (square) bits |= square_mask(*square, board.squares);

@@ -155,9 +155,13 @@ void PoseJudge::look(const Performance& performance, const std::string& when, bo
   const BodyPose now = shown_pose(figure_, performance);
   for (const JointAngle& angle : joint_angles(figure_, anatomy_, now)) {
     const float beyond = angle.excess_rad() * degrees_per_radian;
-    if (beyond < 1) continue;
-    Worst& worst = beyond_deg[angle.name];
-    if (beyond > worst.value) worst = {beyond, angle.name, when};
+    const bool out = beyond > 1;
+    if (!out && breaks.count(angle.name) == 0) continue;
+    Break& broken = breaks[angle.name];
+    if (out && !std::exchange(broken.out, out) && broken.times++ == 0) broken.first = when;
+    broken.out = out;
+    broken.frames += out ? 1 : 0;
+    if (out && beyond > broken.worst.value) broken.worst = {beyond, angle.name, when};
   }
   if (!before_.turn.empty() && !jumped) {
     for (std::size_t j = 0; j < now.turn.size(); ++j) {
@@ -217,16 +221,20 @@ GraspFigures measure_grasps(const Figure& figure, Hand hand, const Moves& moves,
     }
     const Point3 goal = centre_of_square_B(to, scene.board);
     r.frame({grasp(id, "light_1", {goal}, hand)}, fresh);
-    stands = to;
     for (int i = 0; i < 300 && !r.ended(id); ++i) {
       r.frame();
       if (skin && phase(r, id) == "carry") look_at_carried(r, scene.board, whole_hand, fingers, worst);
     }
     ++worst.grasps;
-    if (r.said[id].back().state != FeedbackState::finished) ++worst.failed;
+    const bool done = r.said[id].back().state == FeedbackState::finished;
+    if (!done) ++worst.failed;
+    stands = done ? to : 0;
     for (const Feedback& f : r.said[id]) {
+      if (static_cast<float>(f.gap_mm) > worst.worst_gap_mm)
+        worst.where = std::to_string(from) + "-" + std::to_string(to);
       worst.worst_gap_mm = std::max(worst.worst_gap_mm, static_cast<float>(f.gap_mm));
     }
+    if (!done) continue;
     const Vector3f put(static_cast<float>(goal[0]), static_cast<float>(goal[1]), static_cast<float>(goal[2]));
     worst.worst_place_mm = std::max(worst.worst_place_mm, 1000 * (r.piece("light_1") - put).norm());
   }
@@ -291,6 +299,7 @@ ClearanceFigures measure_clearance(const Figure& figure, int moves, unsigned see
     }
     ++worst.moves;
     if (r.said[id].back().state != FeedbackState::finished) ++worst.failed;
+    for (const Feedback& f : r.said[id]) worst.gap_mm = std::max(worst.gap_mm, static_cast<float>(f.gap_mm));
   }
   return worst;
 }
@@ -435,7 +444,7 @@ ChaosFigures measure_chaos(const Figure& figure, int commands, unsigned seed, Po
   }
   PoseJudge end(figure);
   end.look(r.last, "the end");
-  result.legal_end = end.finite && end.beyond_deg.empty();
+  result.legal_end = end.finite && end.breaks.empty();
   return result;
 }
 
@@ -468,8 +477,9 @@ void play_every_clip(const Figure& figure, PoseJudge& judge) {
 }
 
 void expect_within_bounds(const PoseJudge& judge) {
-  for (const auto& [name, worst] : judge.beyond_deg) {
-    ADD_FAILURE() << name << " is " << worst.value << " degrees beyond its range, " << worst.when;
+  for (const auto& [name, broken] : judge.breaks) {
+    ADD_FAILURE() << name << " left its range " << broken.times << " times, first " << broken.first << "; at most by "
+                  << broken.worst.value << " degrees, " << broken.worst.when;
   }
   EXPECT_LT(judge.turn_deg.value, largest_turn_deg()) << judge.turn_deg.joint << ", " << judge.turn_deg.when;
   EXPECT_LT(judge.move_m.value, largest_move_m()) << judge.move_m.joint << ", " << judge.move_m.when;

@@ -49,9 +49,18 @@ class PoseJudge {
   // `jumped`: he is somewhere else at once because he was told to be; then the change counts as none.
   void look(const Performance& performance, const std::string& when, bool jumped = false);
 
-  std::map<std::string, Worst> beyond_deg;  // by angle, those that left their range by more than a degree
-  Worst turn_deg;                           // of a joint against its parent, in a frame
-  Worst move_m;                             // of a joint in the room, in a frame
+  // An angle that left its range by more than a degree.
+  struct Break {
+    Worst worst;
+    int times = 0;      // that it left its range
+    int frames = 0;     // that it was out
+    std::string first;  // when it first did
+    bool out = false;   // now
+  };
+
+  std::map<std::string, Break> breaks;  // by angle
+  Worst turn_deg;                       // of a joint against its parent, in a frame
+  Worst move_m;                         // of a joint in the room, in a frame
   bool finite = true;
 
  private:
@@ -74,7 +83,8 @@ struct GraspFigures {
   int grasps = 0;
   int failed = 0;
   float worst_gap_mm = 0;                // of the grasp point from the piece when the hand closes and when it opens
-  float worst_place_mm = 0;              // of the piece from where it was to be put
+  std::string where;                     // in which move
+  float worst_place_mm = 0;              // of the piece from where it was to be put, of those that are done
   float deepest_mm = 0;                  // skin of the hand in the piece it carries
   std::array<float, 3> widest_gap_mm{};  // between the piece and the skin of thumb, forefinger, middle finger
   float below_board_mm = 0;              // skin of the hand under the board's surface while it carries
@@ -88,6 +98,7 @@ struct ClearanceFigures {
   int failed = 0;
   float in_pieces_mm = 0;  // skin of hands and forearms inside any piece but the one that is moved
   float in_table_mm = 0;   // and under board and table
+  float gap_mm = 0;        // of the grasp point from the piece, at its worst
   std::string where;       // of the worst
   std::map<std::string, float> in_pieces_by_phase_mm;
   std::string where_in_table;

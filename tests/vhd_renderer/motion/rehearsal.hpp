@@ -25,10 +25,11 @@ inline Scene board_with(const std::vector<std::pair<std::string, int>>& pieces) 
 }
 
 struct Rehearsal {
-  explicit Rehearsal(Figure who = mannequin()) : figure(std::move(who)) {}
+  explicit Rehearsal(Figure who = mannequin(), ClipLibrary clips = clip_library())
+      : figure(std::move(who)), director(figure, {}, std::move(clips)) {}
 
   Figure figure;
-  Director director{figure};
+  Director director;
   std::int64_t now_ns = 0;
   Performance last;
   std::map<std::uint64_t, std::vector<Feedback>> said;

@@ -51,7 +51,7 @@ TEST(Director, SaysForAsLongAsTheSoundLastsAndIsSilencedByStop) {
   const auto sound = std::make_shared<Sound>(two_tones());
   const Figure figure = mannequin();
   Director director(figure, [&](const std::string&, const std::string& language) {
-    return language == "en" ? std::shared_ptr<const Sound>(sound) : nullptr;
+    return ready_sound(language == "en" ? sound : nullptr);
   });
   DirectorInputs in;
   Command say;
@@ -77,6 +77,60 @@ TEST(Director, SaysForAsLongAsTheSoundLastsAndIsSilencedByStop) {
   in.commands.front() = Command{};
   in.commands.front().id = 3;  // stop everything
   EXPECT_EQ(director.step(in).sound, nullptr);
+}
+
+TEST(Director, GoesOnWhileTheVoiceIsStillMakingItsSound) {
+  const auto sound = std::make_shared<Sound>(two_tones());
+  const Figure figure = mannequin();
+  std::promise<std::shared_ptr<const Sound>> promise;
+  const SoundToCome to_come = promise.get_future().share();
+  Director director(figure, [&](const std::string&, const std::string&) { return to_come; });
+  DirectorInputs in;
+  Command say;
+  say.id = 1;
+  say.action = Say{"aaaa aaaa", "en", ""};
+  in.commands = {say};
+  const auto step = [&] {
+    const Performance p = director.step(in);
+    in.commands.clear();
+    in.now_ns += frame_ns;
+    return p;
+  };
+  for (int i = 0; i < 10; ++i) {
+    const Performance p = step();
+    EXPECT_EQ(p.sound, nullptr);
+    EXPECT_EQ(p.subtitle, "aaaa aaaa") << "it can be read before it is heard";
+  }
+  promise.set_value(sound);
+  const Performance heard = step();
+  EXPECT_EQ(heard.sound, sound);
+  EXPECT_EQ(heard.sound_s, 0) << "from its beginning";
+  FeedbackState last = FeedbackState::started;
+  int frames = 0;
+  for (; !is_final(last) && frames < 100; ++frames) {
+    for (const Feedback& f : step().feedback) last = f.state;
+  }
+  EXPECT_EQ(last, FeedbackState::finished);
+  EXPECT_NEAR(frames * 0.04, 1.7, 0.09);
+}
+
+TEST(Director, DoesNotWaitForAVoiceForEver) {
+  const Figure figure = mannequin();
+  std::promise<std::shared_ptr<const Sound>> never;
+  const SoundToCome to_come = never.get_future().share();
+  Director director(figure, [&](const std::string&, const std::string&) { return to_come; });
+  DirectorInputs in;
+  Command say;
+  say.id = 1;
+  say.action = Say{"Your move.", "en", ""};
+  in.commands = {say};
+  FeedbackState last = FeedbackState::accepted;
+  for (int i = 0; i < 120 && !is_final(last); ++i) {
+    for (const Feedback& f : director.step(in).feedback) last = f.state;
+    in.commands.clear();
+    in.now_ns += frame_ns;
+  }
+  EXPECT_EQ(last, FeedbackState::finished) << "the words were shown for as long as it takes to read them";
 }
 
 }  // namespace
