@@ -27,6 +27,7 @@ std::unique_ptr<Endpoint> open(bool listens, const std::string& address, const s
   options.role = listens ? Role::tracker : Role::renderer;
   options.software = "far_worker";
   options.token_file = token_file;
+  options.video_codec = PixelCodec::raw_bgr8;  // the numbers in the pictures must arrive as they were
   auto link = listens ? listen_tcp(address, options) : connect_tcp(address, options);
   if (link) return std::move(*link);
   std::fprintf(stderr, "%s\n", link.error().message.c_str());
