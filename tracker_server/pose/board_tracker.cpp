@@ -119,7 +119,8 @@ cv::Rect part_with(const Model& model, const BoardGeometry& board, const Intrins
 }
 
 bool looks_smeared(const PoseFit& fit, double way_px) {
-  const bool few = fit.share()<smeared_if_fewer, out_of_place = fit.rms_px> smeared_if_rms_px;
+  const bool few = fit.share() < smeared_if_fewer;
+  const bool out_of_place = fit.rms_px > smeared_if_rms_px;
   return way_px > smeared_if_faster_px ? few || out_of_place : few && out_of_place;
 }
 
