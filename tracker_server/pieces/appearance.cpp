@@ -20,6 +20,9 @@ constexpr double clear_evidence = 2.7;
 constexpr double undecided = 0.12;
 constexpr double undecided_score = 0.2;
 
+// Of the squares that are never played on so many are looked at as a whole: how busy is one on which nothing stands?
+constexpr std::size_t floor_every = 5;
+
 // An empty square is never taken for quieter than these shares of the step between light and dark squares: on a clean,
 // bright board a smear would stand out as much as a piece.
 constexpr float quietest_structure = 1.0F / 60, quietest_difference = 1.0F / 20;
@@ -93,19 +96,36 @@ struct Zones {
   }
 };
 
+// Of so few values the one with half of them below it is found faster by counting than by sorting: no branch depends on
+// what they are.
+constexpr std::size_t most_in_zone = 24;
+using FewValues = std::array<float, most_in_zone>;  // what is not used is infinite
+
+float median_of_few(const FewValues& values, std::size_t count) {
+  const auto middle = static_cast<int>(count / 2);
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    int below = 0, alike = 0;
+    for (std::size_t k = 0; k < most_in_zone; ++k) {
+      below += values[k] < values[i];
+      alike += values[k] == values[i];
+    }
+    if (below <= middle && middle < below + alike) return values[i];
+  }
+  return values[count - 1];
+}
+
 // The median of each channel over a few samples.
 Colour median_colour(const std::vector<Colour>& samples, const std::vector<std::size_t>& zone) {
-  std::array<std::array<float, patch_side * patch_side>, 3> channels;
+  std::array<FewValues, 3> channels;
+  for (FewValues& channel : channels) channel.fill(std::numeric_limits<float>::infinity());
   for (std::size_t i = 0; i < zone.size(); ++i) {
     const Colour& c = samples[zone[i]];
     channels[0][i] = c.light;
     channels[1][i] = c.red_green;
     channels[2][i] = c.warm_cold;
   }
-  const auto middle = static_cast<std::ptrdiff_t>(zone.size() / 2);
-  for (auto& channel : channels)
-    std::nth_element(channel.begin(), channel.begin() + middle, channel.begin() + std::ssize(zone));
-  return {channels[0][zone.size() / 2], channels[1][zone.size() / 2], channels[2][zone.size() / 2]};
+  return {median_of_few(channels[0], zone.size()), median_of_few(channels[1], zone.size()),
+          median_of_few(channels[2], zone.size())};
 }
 
 CellLook look_at(const CellPatch& patch, const Zones& zones, bool ground_only) {
@@ -155,8 +175,8 @@ float usual_scatter(const BoardView& view, std::size_t parity, const Colour& usu
 }
 
 // How much of a square differs from the empty ones of its colour: a hand covers the corners too, a piece does not.
-void measure_cover(const BoardView& view, std::vector<CellLook>& cells) {
-  const std::array<GroundLook, 2> grounds = ground_looks(view, cells);
+void measure_cover(const BoardView& view, const GroundTolerance& most, std::vector<CellLook>& cells) {
+  const std::array<GroundLook, 2> grounds = ground_looks(view, cells, most);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const GroundLook& ground = grounds[parity_of(i, view.squares)];
     if (!ground.known || !cells[i].seen) continue;
@@ -210,10 +230,11 @@ std::vector<float> evidence_of(const std::vector<CellLook>& cells, int squares, 
 std::vector<float> scores_of(const std::vector<CellLook>& cells, int squares, const std::array<Colour, 2>& usual,
                              const SquareCalibration& calibration) {
   std::vector<float> scores(cells.size(), -1);
-  const double step = length(usual[0] - usual[1]);
+  const BoardLight light = board_light(cells, squares);
+  const double noise = calibration.more_noise(light);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (!cells[i].seen || only_glare(cells[i], usual[parity_of(i, squares)])) continue;
-    scores[i] = static_cast<float>(calibration.score(features_of(cells[i], step)));
+    scores[i] = static_cast<float>(calibration.score(features_of(cells[i], light.step, noise)));
   }
   return scores;
 }
@@ -290,34 +311,42 @@ void learn_piece_colours(const std::vector<Colour>& pieces, double board_middle,
 
 }  // namespace
 
-std::array<GroundLook, 2> ground_looks(const BoardView& view, const std::vector<CellLook>& cells) {
+std::array<GroundLook, 2> ground_looks(const BoardView& view, const std::vector<CellLook>& cells,
+                                       const GroundTolerance& most) {
+  constexpr double least = 18, of_usual = 2.5;  // grey levels; times the usual scatter
+  const std::array<Colour, 2> usual = usual_grounds(cells, view.squares);
+  const double step = length(usual[0] - usual[1]);
   std::array<GroundLook, 2> looks;
   for (const std::size_t parity : {0U, 1U}) {
-    std::vector<Colour> grounds;
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      if (parity_of(i, view.squares) == parity && cells[i].seen) grounds.push_back(cells[i].ground);
-    if (grounds.size() < 4) continue;
-    const Colour usual = median_colour(grounds);
-    looks[parity] = {usual, std::max(18.0F, 2.5F * usual_scatter(view, parity, usual)), true};
+    std::size_t seen = 0;
+    for (std::size_t i = 0; i < cells.size(); ++i) seen += parity_of(i, view.squares) == parity && cells[i].seen;
+    if (seen < 4) continue;
+    const double scatter = usual_scatter(view, parity, usual[parity]);
+    const double tolerance = std::max(least, std::min(of_usual * scatter, most.steps[parity] * step));
+    looks[parity] = {usual[parity], static_cast<float>(tolerance), true};
   }
   return looks;
 }
 
-std::vector<CellLook> look_at_cells(const BoardView& view, std::optional<int> played) {
+std::vector<CellLook> look_at_cells(const BoardView& view, std::optional<int> played, const GroundTolerance& most) {
   static const Zones zones;
   std::vector<CellLook> cells;
   cells.reserve(view.cells.size());
   for (std::size_t i = 0; i < view.cells.size(); ++i) {
-    const bool ground_only = played && parity_of(i, view.squares) != static_cast<std::size_t>(*played);
+    const bool unplayed = played && parity_of(i, view.squares) != static_cast<std::size_t>(*played);
+    const bool ground_only = unplayed && i % floor_every != 0;
     cells.push_back(look_at(view.cells[i], zones, ground_only));
   }
-  measure_cover(view, cells);
+  measure_cover(view, most, cells);
   return cells;
 }
 
-double colour_step(const std::vector<CellLook>& cells, int squares) {
+BoardLight board_light(const std::vector<CellLook>& cells, int squares) {
   const std::array<Colour, 2> usual = usual_grounds(cells, squares);
-  return length(usual[0] - usual[1]);
+  std::vector<float> structures;
+  for (std::size_t i = 0; i < cells.size(); i += floor_every)
+    if (parity_of(i, squares) == 0 && cells[i].seen) structures.push_back(cells[i].structure);
+  return {length(usual[0] - usual[1]), structures.empty() ? 0 : median(structures)};
 }
 
 Reading read_appearance(const std::vector<CellLook>& cells, int squares, const Foreknowledge& known) {

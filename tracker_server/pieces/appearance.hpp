@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -21,8 +22,15 @@ struct CellLook {
   Colour ground;         // of its corners: the empty square
 };
 
-// played: (row + col) % 2 of the squares that carry pieces, where known: of the others only the ground is looked at.
-std::vector<CellLook> look_at_cells(const BoardView& view, std::optional<int> played = std::nullopt);
+// How far the samples of empty squares are from their usual colour at most, by (row + col) % 2, in steps between the
+// board's two colours. Learned from pictures without a hand: in one with an arm over half the board nothing is usual.
+struct GroundTolerance {
+  std::array<double, 2> steps{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+};
+
+// played: (row + col) % 2 of the squares that carry pieces, where known: of most others only the ground is looked at.
+std::vector<CellLook> look_at_cells(const BoardView& view, std::optional<int> played = std::nullopt,
+                                    const GroundTolerance& most = {});
 
 // How the empty squares of one colour look in a picture.
 struct GroundLook {
@@ -32,7 +40,8 @@ struct GroundLook {
 };
 
 // By (row + col) % 2.
-std::array<GroundLook, 2> ground_looks(const BoardView& view, const std::vector<CellLook>& cells);
+std::array<GroundLook, 2> ground_looks(const BoardView& view, const std::vector<CellLook>& cells,
+                                       const GroundTolerance& most = {});
 
 // What was learned from a picture; kept, it steadies the next one.
 struct BoardLook {
@@ -58,8 +67,13 @@ struct Foreknowledge {
   const SquareCalibration* calibration = nullptr;  // what was learned from squares whose contents were known
 };
 
-// The step between the usual colours of light and dark squares, grey levels.
-double colour_step(const std::vector<CellLook>& cells, int squares);
+// How well the board can be seen in a picture, grey levels.
+struct BoardLight {
+  double step = 0;   // between the usual colours of light and dark squares
+  double floor = 0;  // how busy a square on which nothing stands looks: noise and grain
+};
+
+BoardLight board_light(const std::vector<CellLook>& cells, int squares);
 
 Reading read_appearance(const std::vector<CellLook>& cells, int squares, const Foreknowledge& known);
 

@@ -14,20 +14,25 @@ constexpr double rate = 0.04;          // of a picture: light changes over secon
 constexpr double trusted_share = 0.9;  // of the known squares must look as they are said to be
 constexpr double clearly_apart = 2.5;  // standard deviations between the two kinds
 constexpr double least_scatter = 0.1;  // of a feature: a clean start position says little about later squares
-constexpr double dark_share = 0.4;     // of the usual step between the board's colours
+constexpr double dark_share = 0.25;    // of the usual step between the board's colours
+constexpr double most_noise = 4;       // times the usual, in steps
 
 }  // namespace
 
-SquareFeatures features_of(const CellLook& look, double step) {
+SquareFeatures features_of(const CellLook& look, double step, double noise) {
   const double scale = std::max(step, 1.0);
   const Colour offset = look.middle - look.ground;
+  // Independent of what stands there, noise adds to it as squares.
+  const double busy = look.structure / scale, least_busy = 0.5 / scale;
   SquareFeatures features;
-  features << std::log2(std::max(look.structure, 0.5F) / scale), std::log2(std::max(look.difference, 0.5F) / scale),
-      offset.light / scale, offset.red_green / scale, offset.warm_cold / scale;
+  features << 0.5 * std::log2(std::max(busy * busy - noise, least_busy * least_busy)),
+      std::log2(std::max(look.difference, 0.5F) / scale), offset.light / scale, offset.red_green / scale,
+      offset.warm_cold / scale;
   return features;
 }
 
-void SquareCalibration::learn(const std::vector<KnownSquare>& squares, double step) {
+bool SquareCalibration::learn(const std::vector<KnownSquare>& squares, const BoardLight& light) {
+  if (!(light.step >= 1)) return false;
   std::array<SquareFeatures, 2> mean{SquareFeatures::Zero(), SquareFeatures::Zero()};
   std::array<std::size_t, 2> count{};
   for (const KnownSquare& square : squares) {
@@ -35,8 +40,8 @@ void SquareCalibration::learn(const std::vector<KnownSquare>& squares, double st
     mean[square.taken] += square.features;
     ++count[square.taken];
   }
-  if (count[0] < fewest || count[1] < fewest) return;
-  if (static_cast<double>(count[0] + count[1]) < trusted_share * static_cast<double>(squares.size())) return;
+  if (count[0] < fewest || count[1] < fewest) return false;
+  if (static_cast<double>(count[0] + count[1]) < trusted_share * static_cast<double>(squares.size())) return false;
   for (const std::size_t kind : {0U, 1U}) mean[kind] /= static_cast<double>(count[kind]);
   Eigen::Matrix<double, 5, 5> scatter = Eigen::Matrix<double, 5, 5>::Zero();
   for (const KnownSquare& square : squares) {
@@ -49,10 +54,13 @@ void SquareCalibration::learn(const std::vector<KnownSquare>& squares, double st
   empty_ += share * (mean[0] - empty_);
   taken_ += share * (mean[1] - taken_);
   scatter_ += share * (scatter - scatter_);
-  step_ += share * (step - step_);
+  // What is noisier than usual was brought to the usual before it was learned.
+  const double floor = share == 1 ? light.floor : std::min(light.floor, light_.floor / light_.step * light.step);
+  light_.floor += share * (floor - light_.floor);
+  light_.step += share * (light.step - light_.step);
   update();
 
-  if (ready_) return;
+  if (ready_) return true;
   // The first lesson is believed only if what it says holds for the squares that it comes from.
   ready_ = true;
   const auto as_said = std::count_if(squares.begin(), squares.end(), [&](const KnownSquare& square) {
@@ -62,6 +70,7 @@ void SquareCalibration::learn(const std::vector<KnownSquare>& squares, double st
   const bool pieces_stand_out = taken_[1] > empty_[1];
   ready_ = begun_ = pieces_stand_out && apart > clearly_apart &&
                     static_cast<double>(as_said) >= trusted_share * static_cast<double>(squares.size());
+  return ready_;
 }
 
 void SquareCalibration::update() {
@@ -75,8 +84,15 @@ double SquareCalibration::score(const SquareFeatures& features) const {
   return apart > 0 ? 2 * direction_.dot(features - 0.5 * (empty_ + taken_)) / apart : 0;
 }
 
-bool SquareCalibration::too_dark(double step) const {
-  return ready_ && step < dark_share * step_;
+double SquareCalibration::more_noise(const BoardLight& light) const {
+  if (!ready_ || !(light.step > 0)) return 0;
+  const double now = light.floor / light.step, usual = light_.floor / light_.step;
+  return std::max(0.0, now * now - usual * usual);
+}
+
+bool SquareCalibration::too_dark(const BoardLight& light) const {
+  return ready_ &&
+         (light.step < dark_share * light_.step || light.floor * light_.step > most_noise * light_.floor * light.step);
 }
 
 }  // namespace counterpart

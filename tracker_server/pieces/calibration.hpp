@@ -14,7 +14,8 @@ namespace counterpart {
 // step between the board's two colours, which goes up and down with the light.
 using SquareFeatures = Eigen::Matrix<double, 5, 1>;
 
-SquareFeatures features_of(const CellLook& look, double step);
+// noise: what the picture has more of it than the usual one, squared, in steps (see SquareCalibration::more_noise).
+SquareFeatures features_of(const CellLook& look, double step, double noise = 0);
 
 struct KnownSquare {
   SquareFeatures features;
@@ -24,10 +25,10 @@ struct KnownSquare {
 // Two classes with means and a common scatter, told apart along Fisher's direction. Follows slow changes.
 class SquareCalibration {
  public:
-  // One picture's known squares; step: between the board's two colours, grey levels. Pictures in which too few squares
-  // of either kind are known teach nothing. Squares may be known wrongly now and then: a picture in which many look
-  // otherwise than they are said to be is not believed.
-  void learn(const std::vector<KnownSquare>& squares, double step);
+  // One picture's known squares. Pictures in which too few squares of either kind are known teach nothing. Squares may
+  // be known wrongly now and then: a picture in which many look otherwise than they are said to be is not believed.
+  // Returns whether anything was learned.
+  bool learn(const std::vector<KnownSquare>& squares, const BoardLight& light);
 
   // False until empty squares and pieces have been told apart well.
   bool ready() const { return ready_; }
@@ -35,15 +36,19 @@ class SquareCalibration {
   // -1: as the usual empty square, 1: as the usual piece. Only if ready.
   double score(const SquareFeatures& features) const;
 
+  // Noise does not go down with the light: it makes empty squares busy. By how much more than in the pictures that were
+  // learned from, squared, in steps.
+  double more_noise(const BoardLight& light) const;
+
   // Whether so little light has come since that what is learned does not hold.
-  bool too_dark(double step) const;
+  bool too_dark(const BoardLight& light) const;
 
  private:
   void update();
 
   bool ready_ = false;
   bool begun_ = false;
-  double step_ = 0;
+  BoardLight light_;
   SquareFeatures empty_ = SquareFeatures::Zero(), taken_ = SquareFeatures::Zero();
   Eigen::Matrix<double, 5, 5> scatter_ = Eigen::Matrix<double, 5, 5>::Zero();
   SquareFeatures direction_ = SquareFeatures::Zero();

@@ -57,14 +57,15 @@ void mark(const CellPatch& patch, const GroundLook& ground, cv::Mat1b part) {
 
 }  // namespace
 
-Cover find_cover(const BoardView& view, const std::vector<CellLook>& looks, const std::vector<bool>& was_empty) {
+Cover find_cover(const BoardView& view, const std::vector<CellLook>& looks, const std::vector<bool>& was_empty,
+                 const GroundTolerance& most) {
   const int n = view.squares;
   Cover cover;
   cover.cells = covered_cells(looks, n);
   cover.any = std::find(cover.cells.begin(), cover.cells.end(), true) != cover.cells.end();
   cover.samples = cv::Mat1b(n * patch_side, n * patch_side, std::uint8_t{0});
   if (!cover.any) return cover;
-  const std::array<GroundLook, 2> grounds = ground_looks(view, looks);
+  const std::array<GroundLook, 2> grounds = ground_looks(view, looks, most);
   for (int row = 0; row < n; ++row)
     for (int col = 0; col < n; ++col) {
       const auto i = static_cast<std::size_t>(row * n + col);

@@ -22,6 +22,7 @@ constexpr float covered_share = 0.5F;
 
 // was_empty: by rows, squares that were seen empty before; what now differs in one of them beside the cover belongs to
 // it.
-Cover find_cover(const BoardView& view, const std::vector<CellLook>& looks, const std::vector<bool>& was_empty);
+Cover find_cover(const BoardView& view, const std::vector<CellLook>& looks, const std::vector<bool>& was_empty,
+                 const GroundTolerance& most = {});
 
 }  // namespace counterpart

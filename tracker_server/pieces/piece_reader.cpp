@@ -1,6 +1,8 @@
 #include "tracker_server/pieces/piece_reader.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "protocol/vocabulary/board_geometry.hpp"
 
@@ -28,6 +30,7 @@ PieceReader::PieceReader(int squares, ReadingMethod method) : squares_(squares),
 
 void PieceReader::forget() {
   calibration_ = {};
+  tolerance_ = {};
   scan_rule_.reset();
   memory_.assign(static_cast<std::size_t>(squares_ * squares_), {});
   started_ = false;
@@ -35,7 +38,7 @@ void PieceReader::forget() {
 
 Reading PieceReader::read_now(const std::vector<CellLook>& looks, const std::vector<double>& scan) {
   if (method_ == ReadingMethod::appearance) {
-    if (calibration_.too_dark(colour_step(looks, squares_)))
+    if (calibration_.too_dark(board_light(looks, squares_)))
       return Reading{std::vector<CellSight>(looks.size()), {}, {}};
     return read_appearance(looks, squares_, {1, one_side(expected_), &calibration_});
   }
@@ -50,12 +53,12 @@ Reading PieceReader::read_now(const std::vector<CellLook>& looks, const std::vec
 }
 
 PieceReading PieceReader::read(const BoardView& view, const FrameStamp& stamp, const std::vector<double>& scan) {
-  const std::vector<CellLook> looks = look_at_cells(view, 1);
+  const std::vector<CellLook> looks = look_at_cells(view, 1, tolerance_);
   const Reading now = read_now(looks, scan);
   PieceReading result;
   std::vector<bool> was_empty;
   for (const CellMemory& memory : memory_) was_empty.push_back(memory.steady == CellReading::empty);
-  result.cover = find_cover(view, looks, was_empty);
+  result.cover = find_cover(view, looks, was_empty, tolerance_);
   Occupancy& occupancy = result.occupancy;
   occupancy.stamp = stamp;
   occupancy.squares = squares_;
@@ -83,7 +86,7 @@ PieceReading PieceReader::read(const BoardView& view, const FrameStamp& stamp, c
     occupancy.cells[i] = {memory.steady, memory.confidence};
   }
   occupancy.covered = result.cover.any;
-  if (!occupancy.covered && method_ == ReadingMethod::appearance) learn(looks);
+  if (!occupancy.covered && method_ == ReadingMethod::appearance) learn(view, looks);
   if (changed || occupancy.covered || stamp.capture_ns < changed_ns_) changed_ns_ = stamp.capture_ns;
   started_ = true;
   occupancy.stable_ns = stamp.capture_ns - changed_ns_;
@@ -91,18 +94,31 @@ PieceReading PieceReader::read(const BoardView& view, const FrameStamp& stamp, c
 }
 
 // The start position is the calibration, and every position after it.
-void PieceReader::learn(const std::vector<CellLook>& looks) {
+void PieceReader::learn(const BoardView& view, const std::vector<CellLook>& looks) {
   const int last = playable_squares(squares_);
   if (static_cast<int>(expected_.size()) != last) return;
-  const double step = colour_step(looks, squares_);
-  if (calibration_.too_dark(step)) return;
+  const BoardLight light = board_light(looks, squares_);
+  if (calibration_.too_dark(light)) return;
+  const double noise = calibration_.more_noise(light);
   std::vector<KnownSquare> known;
   for (int square = 1; square <= last; ++square) {
     const Cell cell = cell_of_square(square, squares_);
     const CellLook& look = looks[static_cast<std::size_t>(cell.row * squares_ + cell.col)];
-    if (look.seen) known.push_back({features_of(look, step), expected_[static_cast<std::size_t>(square - 1)] != 'e'});
+    if (look.seen)
+      known.push_back({features_of(look, light.step, noise), expected_[static_cast<std::size_t>(square - 1)] != 'e'});
   }
-  calibration_.learn(known, step);
+  if (calibration_.learn(known, light)) learn_tolerance(view, looks, light);
+}
+
+void PieceReader::learn_tolerance(const BoardView& view, const std::vector<CellLook>& looks, const BoardLight& light) {
+  constexpr double rate = 0.04;   // of a picture
+  constexpr double leeway = 1.5;  // light may become a little more uneven than it was
+  const std::array<GroundLook, 2> grounds = ground_looks(view, looks, tolerance_);
+  for (const std::size_t parity : {0U, 1U}) {
+    double& most = tolerance_.steps[parity];
+    const double now = leeway * grounds[parity].tolerance / light.step;
+    if (grounds[parity].known) most = std::isinf(most) ? now : most + rate * (now - most);
+  }
 }
 
 bool PieceReader::looks_turned_round() const {

@@ -46,11 +46,13 @@ class PieceReader {
     float confidence = 0;
   };
   Reading read_now(const std::vector<CellLook>& looks, const std::vector<double>& scan);
-  void learn(const std::vector<CellLook>& looks);
+  void learn(const BoardView& view, const std::vector<CellLook>& looks);
+  void learn_tolerance(const BoardView& view, const std::vector<CellLook>& looks, const BoardLight& light);
 
   int squares_;
   ReadingMethod method_;
   SquareCalibration calibration_;
+  GroundTolerance tolerance_;
   std::optional<ScanRule> scan_rule_;
   std::string expected_;
   std::vector<CellMemory> memory_;

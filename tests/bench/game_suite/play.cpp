@@ -13,10 +13,12 @@
 #include "game_controller/rules/generate.hpp"
 #include "protocol/codec/names.hpp"
 #include "protocol/vocabulary/board_geometry.hpp"
+#include "protocol/vocabulary/pose_eigen.hpp"
 #include "stage/film/film.hpp"
 #include "stage/record/record.hpp"
 #include "tracker_server/pipeline/observe.hpp"
 #include "tracker_server/pipeline/real_pieces.hpp"
+#include "tracker_server/pose/projection.hpp"
 
 namespace counterpart::bench {
 namespace {
@@ -76,6 +78,19 @@ std::ostream& operator<<(std::ostream& out, const std::vector<int>& squares) {
 std::string men(std::string squares) {
   std::replace(squares.begin(), squares.end(), 'B', 'b');
   return squares;
+}
+
+// How far the board's corners are from where they should be in the picture, the farthest of four.
+double corners_off_px(const stage::Truth& truth, const Observation& observation) {
+  const double half = 0.5 * truth.board.squares * truth.board.square_size_m;
+  const Eigen::Isometry3d seen_X_CB = to_eigen(observation.pose.X_CB);
+  double off = 0;
+  for (const double x : {-half, half})
+    for (const double y : {-half, half})
+      off = std::max(
+          off, (project(truth.view, {x, y, 0}) - project(observation.intrinsics, seen_X_CB * Eigen::Vector3d(x, y, 0)))
+                   .norm());
+  return off;
 }
 
 class Match {
@@ -247,7 +262,8 @@ void Match::log_sight(const stage::Truth& truth, const Observation& observation)
   sight_ = sight;
   *options_.log << 1e-9 * static_cast<double>(now_ns_) << " s, frame " << played_.frames << ": sees " << sight
                 << "; hand " << truth.hand_share << ", lines hidden " << truth.edges_hidden << ", light "
-                << film_.world().light << '\n';
+                << film_.world().light << ", pose " << name_of(observation.pose.status) << ", corners "
+                << corners_off_px(truth, observation) << " px off\n";
 }
 
 void Match::check_commit(const GameEvent& event, const stage::Truth& truth) {

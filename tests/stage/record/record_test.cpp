@@ -14,8 +14,8 @@ std::string start() {
 }
 
 std::string moved(std::string squares, int from, int to) {
-  squares[static_cast<std::size_t>(from - 1)] = 'e';
-  if (to > 0) squares[static_cast<std::size_t>(to - 1)] = 'b';
+  squares.at(static_cast<std::size_t>(from - 1)) = 'e';
+  if (to > 0) squares.at(static_cast<std::size_t>(to - 1)) = 'b';
   return squares;
 }
 

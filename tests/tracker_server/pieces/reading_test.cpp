@@ -184,5 +184,30 @@ TEST(PieceReader, NothingIsGuessedUnderAHand) {
   EXPECT_GT(unknown, 6);
 }
 
+// So much is hidden that the hidden squares are as usual as the others.
+TEST(PieceReader, AnArmOverHalfTheBoardIsNoBoard) {
+  BoardScene scene = game_scene();
+  for (int square = 1; square <= 20; ++square) scene.pieces.push_back({cell_of_square(square, 10)});
+  PieceReader reader(10);
+  reader.expect(std::string(20, 'b') + std::string(30, 'e'));
+  FrameStamp stamp;
+  const BoardView clear = view_board(test::paint(scene, 2), 10, to_pixel(scene));
+  for (int i = 0; i < 8; ++i) {
+    stamp.capture_ns += 40'000'000;
+    EXPECT_FALSE(reader.read(clear, stamp).occupancy.covered);
+  }
+  // A blue sleeve and the shadow beside it.
+  scene.before = [](int x, int y) -> std::optional<cv::Vec3b> {
+    if (x > 330 && x < 480 && y > 120) return cv::Vec3b(90, 55, 45);
+    if (x > 210 && x <= 330 && y > 120) return cv::Vec3b(75, 85, 100);
+    return std::nullopt;
+  };
+  const BoardView hidden = view_board(test::paint(scene, 2), 10, to_pixel(scene));
+  for (int i = 0; i < 8; ++i) {
+    stamp.capture_ns += 40'000'000;
+    EXPECT_TRUE(reader.read(hidden, stamp).occupancy.covered);
+  }
+}
+
 }  // namespace
 }  // namespace counterpart
