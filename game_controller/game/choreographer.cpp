@@ -141,6 +141,20 @@ std::uint64_t Choreographer::carry(const std::string& piece, const Point3& to_B)
   return tell(grasp, std::move(after), patience_ms);
 }
 
+std::uint64_t Choreographer::ask_to_move(const std::vector<int>& route, const std::string& text) {
+  const std::uint64_t look = tell(at_square(route.front()));
+  Grasp pointing;  // no piece
+  for (const int square : route) {
+    Point3 above = centre_of_square_B(square, board_);
+    above[2] = 3 * board_.piece_height_m;
+    pointing.path_B.push_back(above);
+  }
+  const std::uint64_t shown = tell(pointing, {look}, grasp_deadline_ms);
+  tell(words("make_it_for_me", text), {look});
+  tell(at_player(), {shown});
+  return shown;
+}
+
 void Choreographer::object(const std::string& code, const std::string& text, int square) {
   if (square > 0) tell(at_square(square));
   tell(face("doubt", 0.8, 2.5));

@@ -41,6 +41,9 @@ class Choreographer {
   // Takes a piece somewhere else than a move does: off the board, or onto a man. Returns the id of the grasp.
   std::uint64_t carry(const std::string& piece, const Point3& to_B);
 
+  // Points along the route of a move that the real player is asked to make for him. Returns the id of the pointing.
+  std::uint64_t ask_to_move(const std::vector<int>& route, const std::string& text);
+
   void object(const std::string& code, const std::string& text, int square);    // an illegal move
   void point_at(int square, const std::string& code, const std::string& text);  // a piece to remove
   void conclude(bool won, bool drawn, const std::string& code, const std::string& text);

@@ -27,7 +27,12 @@ const char* side_name(Side side) {
 }  // namespace
 
 Game::State::State(const GameOptions& o, const Rules& r, const Position& start, std::uint64_t first_command)
-    : options(o), rules(&r), record(r, start), lost(o.board, o.virtual_side), human(o.board, first_command) {
+    : options(o),
+      rules(&r),
+      record(r, start),
+      lost(o.board, o.virtual_side),
+      human(o.board, first_command),
+      eyes(o.both_real ? Asked::colours : Asked::places) {
   name_pieces();
 }
 
@@ -43,7 +48,8 @@ void Game::State::step(const GameInputs& inputs) {
     look();
   }
   if (pending && pending->told_ns < 0) pending->told_ns = now_ns;  // resumed: its patience begins now
-  if (pending && pending->grasp != 0 && now_ns - pending->told_ns > hand_patience_ns) landed();
+  const bool by_his_hand = !options.both_real;
+  if (pending && by_his_hand && pending->grasp != 0 && now_ns - pending->told_ns > hand_patience_ns) landed();
   if (lost.under_way() && now_ns - lost_told_ns > hand_patience_ns) set_lost_down();
   if (pending && pending->grasp == 0 && phase == GamePhase::virtual_to_move && !lost.under_way()) tell_move();
   if (ask_engine && phase == GamePhase::virtual_to_move) {
@@ -156,15 +162,32 @@ void Game::State::receive_engine_move(const std::string& text) {
 }
 
 void Game::State::tell_move() {
+  if (options.both_real) {
+    GameEvent& e = event(EventKind::turn);
+    const Route way = routes(*rules, record.position(), pending->move).front();
+    e.code = "make_it_for_me";
+    e.move = pdn_text(*rules, record.position(), pending->move);
+    e.squares = way.squares;
+    e.captured = way.captured;
+    return ask_to_move();
+  }
   const Route route = routes(*rules, record.position(), pending->move).front();
   pending->grasp = human.move(names[route.squares.front()], route.squares, pending->second_try);
+  pending->told_ns = now_ns;
+}
+
+// Points out and says what the real player is to do with the virtual player's real pieces.
+void Game::State::ask_to_move() {
+  const Route route = routes(*rules, record.position(), pending->move).front();
+  pending->grasp = human.ask_to_move(route.squares, favour_sentence(route.squares, route.captured));
   pending->told_ns = now_ns;
 }
 
 void Game::State::hear(const Feedback& feedback) {
   human.hear(feedback);
   if (is_final(feedback.state) && lost.ended(feedback.command_id)) show_scene();
-  if (!pending || pending->grasp == 0 || feedback.command_id != pending->grasp || !is_final(feedback.state)) return;
+  if (options.both_real || !pending || pending->grasp == 0) return;
+  if (feedback.command_id != pending->grasp || !is_final(feedback.state)) return;
   if (feedback.state == FeedbackState::finished) {
     landed();
   } else if (!pending->second_try) {
@@ -187,9 +210,9 @@ void Game::State::landed() {
   const bool was_man = (record.position().kings & one(move.from)) == 0;
   commit(move);
   const bool crowned = was_man && (record.position().kings & one(move.to)) != 0;
-  if (crowned || !by_hand) show_scene();
+  if (crowned || !by_hand || options.both_real) show_scene();
   const GamePhase before = phase;
-  if (move.captured != 0 && !record.ending()) {
+  if (move.captured != 0 && !options.both_real && !record.ending()) {
     to_remove = move.captured;
     phase = GamePhase::waiting_for_removal;
     ask_for_removal(false);
@@ -301,7 +324,7 @@ Scene Game::State::scene() const {
     piece.name = name;
     piece.side = (p.light & bit) != 0 ? Side::light : Side::dark;
     piece.king = (p.kings & bit) != 0 && !lost.awaits_crown(name);
-    piece.real = piece.side == real_side();
+    piece.real = options.both_real || piece.side == real_side();
     piece.p_B = centre_of_square_B(square, options.board);
     scene.pieces.push_back(std::move(piece));
   }
@@ -335,12 +358,13 @@ void Game::State::move_names(const Position& before, const Move& move, const Rou
   std::string name = names[route.squares.front()];
   names.erase(route.squares.front());
   for (const int square : route.captured) {
-    if (before.turn == real_side()) {
+    if (before.turn == real_side() && !options.both_real) {
       lost.capture(names[square], (before.kings & square_mask(square, rules->squares)) != 0, square);
     }
     names.erase(square);
   }
-  if (before.turn == options.virtual_side && is_crowned(*rules, before, move)) lost.crown(name, route.squares.back());
+  const bool crowns_by_hand = before.turn == options.virtual_side && !options.both_real;
+  if (crowns_by_hand && is_crowned(*rules, before, move)) lost.crown(name, route.squares.back());
   names[route.squares.back()] = std::move(name);
 }
 

@@ -20,6 +20,7 @@ namespace counterpart {
 struct GameOptions {
   std::string rules = "international";  // "international", "brazilian", "english"
   Side virtual_side = Side::light;      // the paper's cast: the virtual player has the light pieces
+  bool both_real = false;               // his pieces are real too: he asks the real player to move them for him
   std::string start_fen;                // empty: the usual start
   BoardGeometry board;                  // for the places of pieces
   double table_height_m = 0.74;

@@ -28,8 +28,21 @@ const char* idle_reason(Bits gone, Bits fresh, const std::vector<Cell>& strays) 
 
 }  // namespace
 
-bool Game::State::differs(const Reading& reading, Bits expected) const {
-  return ((reading.occupied ^ expected) & ~reading.unknown) != 0 || !reading.strays.empty();
+// Where something else stands than should, as far as that is seen.
+Bits Game::State::wrong_squares(const Reading& reading, const Position& expected) const {
+  Bits wrong = reading.occupied ^ real_pieces(expected);
+  if (options.both_real) wrong |= reading.light ^ expected.light;
+  return wrong & ~reading.unknown;
+}
+
+bool Game::State::differs(const Reading& reading, const Position& expected) const {
+  return wrong_squares(reading, expected) != 0 || !reading.strays.empty();
+}
+
+// How the board will stand when the virtual player's move has been made for him.
+std::optional<Position> Game::State::asked_for() const {
+  if (!options.both_real || !pending) return std::nullopt;
+  return after(*rules, record.position(), pending->move);
 }
 
 // A square that glares for good must not stop the game; a board half out of the picture may hide anything.
@@ -71,7 +84,7 @@ void Game::State::look() {
 }
 
 void Game::State::look_at_set_up(const Reading& reading) {
-  const Bits expected = real_pieces();
+  const Position& expected = record.position();
   if (!differs(reading, expected)) {
     if (reading.unknown == 0) return begin();
     if (settled() && nearly_all_seen(reading)) return begin();
@@ -79,26 +92,25 @@ void Game::State::look_at_set_up(const Reading& reading) {
     return;
   }
   if (!settled() || !reminding()) return;
-  const Bits wrong = (reading.occupied ^ expected) & ~reading.unknown;
+  const Bits wrong = wrong_squares(reading, expected);
   GameEvent& e = event(EventKind::set_up_wrong);
   e.side = real_side();
   e.squares = squares(wrong);
   if (!reading.strays.empty()) e.code = "light_square";
-  const bool turned = reading.strays.empty() && reading.occupied == turned_round(expected, rules->squares);
+  const bool turned = reading.strays.empty() && reading.occupied == turned_round(real_pieces(), rules->squares) &&
+                      (!options.both_real || reading.light == turned_round(expected.light, rules->squares));
   if (turned && reading.occupied != 0) e.code = "board_turned";
   human.say("set_up", sentence(turned ? "board_turned" : "set_up", e.squares));
 }
 
 void Game::State::look_for_move(const Reading& reading) {
-  const Bits mine = real_pieces();
-  if (!differs(reading, mine)) {
+  if (!differs(reading, record.position())) {
     const bool for_long = eyes.steady_ns(now_ns) >= options.remind_ns;
     if (reading.unknown != 0 && for_long) report_unclear(reading.unknown);
     return;
   }
   if (try_moves(reading) || !settled()) return;
-  const Bits seen = (reading.occupied & ~reading.unknown) | (mine & reading.unknown);
-  const Verdict verdict = judge_own(*rules, record.position(), seen, reading.strays);
+  const Verdict verdict = judge_reading(reading);
   const bool may_be_hidden = verdict.move || verdict.reason == "piece_vanished" || verdict.reason == "no_change" ||
                              !fitting_moves(reading).empty();
   if (reading.unknown != 0 && may_be_hidden) {
@@ -108,14 +120,29 @@ void Game::State::look_for_move(const Reading& reading) {
   }
 }
 
+// What is not seen is taken to be as it was.
+Verdict Game::State::judge_reading(const Reading& reading) const {
+  const Position& before = record.position();
+  const Bits occupied = (reading.occupied & ~reading.unknown) | (real_pieces() & reading.unknown);
+  if (!options.both_real) return judge_own(*rules, before, occupied, reading.strays);
+  Position seen = before;
+  seen.light = occupied & ((reading.light & ~reading.unknown) | (before.light & reading.unknown));
+  seen.dark = occupied & ~seen.light;
+  // A piece does not show that it is a king: the one that has moved keeps what it was.
+  const Bits own_before = pieces_of(before, before.turn), own_now = pieces_of(seen, before.turn);
+  seen.kings &= (seen.light & before.light) | (seen.dark & before.dark);
+  if ((before.kings & own_before & ~own_now) != 0) seen.kings |= own_now & ~own_before;
+  return judge(*rules, before, seen, reading.strays);
+}
+
 // The legal moves after which the board would look so, as far as it is seen.
 std::vector<Move> Game::State::fitting_moves(const Reading& reading) const {
-  const Bits mine = real_pieces();
   std::vector<Move> fitting;
   MoveList legal;
   generate(*rules, record.position(), legal);
   for (const Move& move : legal) {
-    if (move.from != move.to && !differs(reading, (mine & ~one(move.from)) | one(move.to))) fitting.push_back(move);
+    const bool shows = move.from != move.to || options.both_real;  // once round and back: only in what was captured
+    if (shows && !differs(reading, after(*rules, record.position(), move))) fitting.push_back(move);
   }
   return fitting;
 }
@@ -125,7 +152,10 @@ bool Game::State::try_moves(const Reading& reading) {
   if (!nearly_all_seen(reading)) return false;
   const Bits mine = real_pieces();
   std::vector<Move> fitting = fitting_moves(reading);
-  std::erase_if(fitting, [&](const Move& move) { return ((one(move.from) | one(move.to)) & reading.unknown) != 0; });
+  std::erase_if(fitting, [&](const Move& move) {
+    const Bits taken_off = options.both_real ? move.captured : 0;
+    return ((one(move.from) | one(move.to) | taken_off) & reading.unknown) != 0;
+  });
   if (fitting.empty()) return false;
   if (fitting.size() > 1) {
     const auto passed = [&](const Move& move) {
@@ -160,12 +190,33 @@ bool Game::State::try_moves(const Reading& reading) {
 }
 
 void Game::State::look_while_waiting(const Reading& reading) {
+  if (options.both_real) return look_for_favour(reading);
   // He may already be taking off what is about to be captured.
   const Bits tolerated = pending ? pending->move.captured : 0;
   const Bits mine = real_pieces();
   const Bits wrong = (reading.occupied ^ mine) & ~reading.unknown & ~tolerated;
   if ((wrong == 0 && reading.strays.empty()) || !settled()) return;
   object(reading, idle_reason(wrong & mine, wrong & ~mine, reading.strays), squares(wrong));
+}
+
+// All pieces are real: has his move been made for him?
+void Game::State::look_for_favour(const Reading& reading) {
+  const auto asked = asked_for();
+  if (asked && nearly_all_seen(reading) && !differs(reading, *asked)) {
+    const Bits concerned = one(pending->move.from) | one(pending->move.to) | pending->move.captured;
+    if ((concerned & reading.unknown) == 0) return landed();
+  }
+  if (!settled()) return;
+  const Position& before = record.position();
+  if (!differs(reading, before)) {
+    if (asked && now_ns - pending->told_ns >= options.remind_ns) ask_to_move();
+    return;
+  }
+  const Bits wrong = wrong_squares(reading, before);
+  const Bits his = pieces_of(before, options.virtual_side) | (asked ? pieces_of(*asked, options.virtual_side) : 0);
+  if (!reading.strays.empty()) return object(reading, "light_square", squares(wrong));
+  if (reading.unknown != 0 && asked && !differs(reading, *asked)) return report_unclear(reading.unknown);
+  object(reading, (wrong & his) == 0 || !asked ? "not_your_turn" : "not_as_asked", squares(wrong));
 }
 
 void Game::State::look_for_removal(const Reading& reading) {
@@ -198,18 +249,22 @@ void Game::State::look_for_removal(const Reading& reading) {
 void Game::State::look_at_wrong_board(const Reading& reading) {
   Bits tolerated = 0;
   if (behind == GamePhase::waiting_for_removal) tolerated = to_remove;
-  if (behind == GamePhase::virtual_to_move && pending) tolerated = pending->move.captured;
+  if (behind == GamePhase::virtual_to_move && pending && !options.both_real) tolerated = pending->move.captured;
   Reading judged = reading;
   judged.unknown |= tolerated;
   // What was wrong and cannot be seen now may still be so.
-  if (announced && ((announced->occupied ^ real_pieces()) & reading.unknown) != 0) {
+  if (announced && (wrong_squares(*announced, record.position()) & reading.unknown) != 0) {
     if (settled() && now_ns - reminded_ns >= options.remind_ns) {
       reminded_ns = now_ns;
       human.say("put_back", sentence("put_back", {}));
     }
     return;
   }
-  if (!differs(judged, real_pieces())) return put_right();
+  if (!differs(judged, record.position())) return put_right();
+  if (const auto asked = asked_for(); asked && behind == GamePhase::virtual_to_move && !differs(reading, *asked)) {
+    put_right();
+    return look_for_favour(reading);
+  }
   if (behind == GamePhase::real_to_move && try_moves(reading)) return;
   if (!settled()) return;
   if (announced && !agree(*announced, reading)) {

@@ -10,7 +10,7 @@ constexpr std::int64_t absence_ns = 1'000'000'000;        // after so long anyth
 
 }  // namespace
 
-Reading reading_of(const Occupancy& occupancy, int squares_a_side) {
+Reading reading_of(const Occupancy& occupancy, int squares_a_side, Asked asked) {
   Reading reading;
   reading.covered = occupancy.covered;
   const auto cells = static_cast<std::size_t>(squares_a_side) * static_cast<std::size_t>(squares_a_side);
@@ -25,8 +25,10 @@ Reading reading_of(const Occupancy& occupancy, int squares_a_side) {
       const auto square = square_of_cell({row, col}, squares_a_side);
       if (!square) {
         if (piece) reading.strays.push_back({row, col});
-      } else if (piece) {
+      } else if (piece && (asked == Asked::places || seen != CellReading::piece)) {
         reading.occupied |= square_mask(*square, squares_a_side);
+        if (asked == Asked::colours && seen == CellReading::light)
+          reading.light |= square_mask(*square, squares_a_side);
       } else if (seen != CellReading::empty) {
         reading.unknown |= square_mask(*square, squares_a_side);
       }
@@ -36,11 +38,12 @@ Reading reading_of(const Occupancy& occupancy, int squares_a_side) {
 }
 
 bool agree(const Reading& a, const Reading& b) {
-  return a.covered == b.covered && a.strays == b.strays && ((a.occupied ^ b.occupied) & ~a.unknown & ~b.unknown) == 0;
+  const Bits differ = (a.occupied ^ b.occupied) | (a.light ^ b.light);
+  return a.covered == b.covered && a.strays == b.strays && (differ & ~a.unknown & ~b.unknown) == 0;
 }
 
 void SteadyReading::see(const Occupancy& occupancy, int squares_a_side, std::int64_t now_ns) {
-  Reading reading = reading_of(occupancy, squares_a_side);
+  Reading reading = reading_of(occupancy, squares_a_side, asked_);
   if (!seen_ || !agree(reading, believed_) || now_ns - looked_ns_ > absence_ns) {
     // The reader may know better than we how long nothing has changed (it sees every frame).
     since_ns_ = now_ns - (reading.covered ? 0 : std::max<std::int64_t>(occupancy.stable_ns, 0));
@@ -50,6 +53,7 @@ void SteadyReading::see(const Occupancy& occupancy, int squares_a_side, std::int
     since_ns_ += std::max<std::int64_t>(0, now_ns - looked_ns_ - longest_between_ns);
   }
   believed_.occupied = (reading.occupied & ~reading.unknown) | (believed_.occupied & reading.unknown);
+  believed_.light = (reading.light & ~reading.unknown) | (believed_.light & reading.unknown);
   believed_.unknown &= reading.unknown;
   reading_ = std::move(reading);
   looked_ns_ = now_ns;

@@ -13,6 +13,7 @@ namespace counterpart {
 
 struct Reading {
   Bits occupied = 0;
+  Bits light = 0;  // those of `occupied` that are light; only where colours are asked for
   Bits unknown = 0;
   std::vector<Cell> strays;  // pieces on squares that are not played on
   bool covered = false;      // a hand is over the board: nothing here counts
@@ -23,11 +24,19 @@ struct Reading {
 // Whether nothing that is seen in both speaks against their being the same: squares flicker between seen and not.
 bool agree(const Reading& a, const Reading& b);
 
+// What is to be known of the pieces.
+enum class Asked {
+  places,   // one side's pieces are real: whatever stands there is one of them
+  colours,  // both sides' are: what has no clear colour is unknown
+};
+
 // All unknown if the occupancy is of another board size.
-Reading reading_of(const Occupancy& occupancy, int squares_a_side);
+Reading reading_of(const Occupancy& occupancy, int squares_a_side, Asked asked = Asked::places);
 
 class SteadyReading {
  public:
+  explicit SteadyReading(Asked asked = Asked::places) : asked_(asked) {}
+
   void see(const Occupancy& occupancy, int squares_a_side, std::int64_t now_ns);
   void forget() { seen_ = false; }
 
@@ -38,6 +47,7 @@ class SteadyReading {
   std::int64_t steady_ns(std::int64_t now_ns) const;
 
  private:
+  Asked asked_;
   Reading reading_;
   Reading believed_;  // what cannot be told in the last reading is as it was seen before
   bool seen_ = false;

@@ -10,6 +10,7 @@
 #include "game_controller/game/game.hpp"
 #include "game_controller/game/lost_pieces.hpp"
 #include "game_controller/game/reading.hpp"
+#include "game_controller/referee/judge.hpp"
 #include "game_controller/rules/record.hpp"
 #include "game_controller/rules/rules.hpp"
 
@@ -18,7 +19,7 @@ namespace counterpart {
 // The virtual player's move between the engine's answer and the piece's landing.
 struct PendingMove {
   Move move{};
-  std::uint64_t grasp = 0;  // command id; 0: not told yet
+  std::uint64_t grasp = 0;  // command id; 0: not told yet. If all pieces are real: of the pointing
   bool second_try = false;
   std::int64_t told_ns = 0;
 };
@@ -63,7 +64,8 @@ struct Game::State {
 
   Side real_side() const { return other(options.virtual_side); }
   bool real_to_move() const { return record.position().turn == real_side(); }
-  Bits real_pieces() const { return pieces_of(record.position(), real_side()); }
+  Bits real_pieces(const Position& p) const { return options.both_real ? p.light | p.dark : pieces_of(p, real_side()); }
+  Bits real_pieces() const { return real_pieces(record.position()); }
 
   void step(const GameInputs& inputs);
 
@@ -72,11 +74,15 @@ struct Game::State {
   void look_at_set_up(const Reading& reading);
   void look_for_move(const Reading& reading);
   void look_while_waiting(const Reading& reading);
+  void look_for_favour(const Reading& reading);
   void look_for_removal(const Reading& reading);
   void look_at_wrong_board(const Reading& reading);
   std::vector<Move> fitting_moves(const Reading& reading) const;
   bool try_moves(const Reading& reading);
-  bool differs(const Reading& reading, Bits expected) const;
+  Bits wrong_squares(const Reading& reading, const Position& expected) const;
+  bool differs(const Reading& reading, const Position& expected) const;
+  Verdict judge_reading(const Reading& reading) const;
+  std::optional<Position> asked_for() const;
   bool nearly_all_seen(const Reading& reading) const;
   bool settled() const;
   bool reminding();
@@ -98,6 +104,7 @@ struct Game::State {
   // The virtual player.
   void receive_engine_move(const std::string& text);
   void tell_move();
+  void ask_to_move();
   void hear(const Feedback& feedback);
   void landed();
   void carry_lost();

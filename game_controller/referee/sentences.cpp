@@ -7,7 +7,7 @@ namespace counterpart {
 namespace {
 
 // # stands for the squares.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 38> sentences{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 39> sentences{{
     {"no_change", "Nothing has moved. It is still your turn."},
     {"not_your_turn", "It is not your turn. Please put the piece on # back."},
     {"must_capture", "You can capture a piece, so you must. Look at the piece on #."},
@@ -31,6 +31,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 38> sentence
     {"crowned_wrongly", "The man on # has not ended its move on the last row, so it is no king."},
     {"piece_jumped_twice", "You may jump over each piece only once, and it stays there until your move is over."},
     {"virtual_piece_there", "My piece stands on #, so yours cannot be there."},
+    {"not_as_asked", "That is not the move that I asked you to make for me. Look at #."},
     {"remove_captured", "I have captured your piece on #. Please take it off the board."},
     {"put_back", "Please put the pieces back as they were."},
     {"which_capture", "I could not see which way you captured. Please show me, or put the piece back and move again."},
@@ -57,6 +58,15 @@ std::string listed(const std::vector<int>& squares) {
     text += std::to_string(squares[i]);
   }
   return text;
+}
+
+std::string favour_sentence(const std::vector<int>& route, const std::vector<int>& captured) {
+  std::string text =
+      "Please move my piece from " + std::to_string(route.front()) + " to " + std::to_string(route.back()) + " for me";
+  if (!captured.empty())
+    text += ", and take your " + std::string(captured.size() > 1 ? "pieces" : "piece") + " on " + listed(captured) +
+            " off the board";
+  return text + ".";
 }
 
 std::string sentence(std::string_view reason, const std::vector<int>& squares, const std::vector<std::string>& legal) {

@@ -12,6 +12,9 @@ namespace counterpart {
 std::string sentence(std::string_view reason, const std::vector<int>& squares,
                      const std::vector<std::string>& legal = {});
 
+// What the real player is asked to do where the virtual player's pieces are real too. route: from, via ..., to.
+std::string favour_sentence(const std::vector<int>& route, const std::vector<int>& captured);
+
 // "12", "12 and 17", "12, 17 and 21"
 std::string listed(const std::vector<int>& squares);
 

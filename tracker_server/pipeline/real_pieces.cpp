@@ -2,7 +2,8 @@
 
 namespace counterpart {
 
-std::string real_pieces(const BoardState& state) {
+std::string real_pieces(const BoardState& state, bool both_real) {
+  if (both_real) return state.squares;
   std::string out = state.squares;
   const char* of_virtual = state.virtual_side == Side::light ? "wW" : "bB";
   for (char& square : out) {

@@ -7,7 +7,7 @@
 
 namespace counterpart {
 
-// One of "wbWBe" a square in order of number; the virtual side's pieces are 'e'.
-std::string real_pieces(const BoardState& state);
+// One of "wbWBe" a square in order of number; the virtual side's pieces are 'e' unless they are real too.
+std::string real_pieces(const BoardState& state, bool both_real = false);
 
 }  // namespace counterpart

@@ -128,7 +128,7 @@ Observation Server::look(const Frame& frame) {
     if (!options.intrinsics) options.intrinsics = camera_->intrinsics();
     context_.emplace(options);
   }
-  if (options_.activity == Activity::game) context_->expect(real_pieces(game_.board_state()));
+  if (options_.activity == Activity::game) context_->expect(real_pieces(game_.board_state(), options_.game.both_real));
   Observation observation = observe(frame, *context_);
   for (const auto& [step, ms] : observation.step_ms) times_.add(step, ms);
   return observation;

@@ -21,6 +21,7 @@ struct Arguments {
   std::string board_file;
   std::string init = "auto";
   std::string virtual_side = "light";
+  std::string real = "one";
   std::string activity = "game";
   std::string video = "auto";
   std::string pieces = "appearance";
@@ -68,6 +69,7 @@ Result<void> complete(Arguments& arguments) {
   serve.game.board = serve.observe.board;
   if (serve.observe.board.squares == 8 && serve.game.rules == "international") serve.game.rules = "brazilian";
   serve.game.virtual_side = arguments.virtual_side == "light" ? Side::light : Side::dark;
+  serve.game.both_real = arguments.real == "both";
   serve.opponent.rules = serve.game.rules;
   serve.opponent.lockstep = serve.lockstep;
   serve.activity = arguments.activity == "game" ? Activity::game : Activity::show;
@@ -109,6 +111,13 @@ void add_serve(CLI::App& app, int& exit_code) {
   command->add_option("--virtual-side", arguments->virtual_side, "the side the virtual human plays")
       ->check(CLI::IsMember({"light", "dark"}))
       ->capture_default_str();
+  command
+      ->add_option(
+          "--real", arguments->real,
+          "whose pieces stand on the real board: one (the real player's; the others exist on the screen only) or "
+          "both (the virtual human asks the player to move his for him)")
+      ->check(CLI::IsMember({"one", "both"}))
+      ->capture_default_str();
   command->add_option("--level", serve.opponent.level, "1 (a beginner beats it) to 8")
       ->check(CLI::Range(1, 8))
       ->capture_default_str();
@@ -130,7 +139,9 @@ void add_serve(CLI::App& app, int& exit_code) {
   command->add_option("--poses", serve.poses_file, "write every pose here, CSV");
   command->add_option("--report", serve.report_file, "write counts and times here at the end, JSON");
   command->add_option("--record", serve.link.record_file, "capture everything on the link, MCAP");
-  command->add_option("--video", arguments->video, "raw, jpeg, or auto: raw on loopback, between hosts by what the link carries")
+  command
+      ->add_option("--video", arguments->video,
+                   "raw, jpeg, or auto: raw on loopback, between hosts by what the link carries")
       ->check(CLI::IsMember({"auto", "raw", "jpeg"}))
       ->capture_default_str();
   command->callback([arguments, &exit_code] {

@@ -60,6 +60,83 @@ TEST(Game, the_virtual_player_may_have_the_dark_pieces) {
   EXPECT_EQ(play.moves_drawn_right, play.count(EventKind::turn));
 }
 
+GameOptions both_real(const std::string& fen = "") {
+  GameOptions options = options_from(fen);
+  options.both_real = true;
+  return options;
+}
+
+TEST(Game, all_pieces_may_be_real) {
+  for (const Side side : {Side::light, Side::dark}) {
+    GameOptions options = both_real();
+    options.virtual_side = side;
+    Play play(options, 11);
+    ASSERT_TRUE(play.until(EventKind::game_over, 60'000));
+    expect_sound(play);
+    EXPECT_GE(play.game.board_state().moves.size(), 20u);
+    EXPECT_GE(play.count(EventKind::captured), 4);
+    EXPECT_EQ(play.count(EventKind::illegal_move), 0);
+    EXPECT_EQ(play.count(EventKind::waiting_for_removal), 0) << "who captures takes off";
+    EXPECT_TRUE(play.renderer.pieces.empty()) << "nothing is drawn, all of it is there";
+    EXPECT_EQ(play.table.pieces, play.position().light | play.position().dark);
+    EXPECT_EQ(*play.table.light, play.position().light);
+  }
+}
+
+TEST(Game, another_move_than_he_asked_for_is_not_taken_for_it) {
+  Play play(both_real("W:W32,33:B1,2"), 1);
+  play.player_does_favours = false;
+  std::string asked;
+  for (int i = 0; i < 200 && asked.empty(); ++i) {
+    for (const GameEvent& e : play.step().events)
+      if (e.code == "make_it_for_me") asked = e.move;
+  }
+  ASSERT_FALSE(asked.empty());
+  const Position before = play.position();
+  const Position meant = after(play.rules(), before, *read_move(play.rules(), before, asked));
+  MoveList legal;
+  generate(play.rules(), before, legal);
+  const auto other_move = std::find_if(legal.begin(), legal.end(),
+                                       [&](const Move& move) { return !(after(play.rules(), before, move) == meant); });
+  ASSERT_NE(other_move, legal.end());
+  play.put(after(play.rules(), before, *other_move));
+  ASSERT_TRUE(play.until(EventKind::illegal_move, 200));
+  EXPECT_EQ(play.events.back().code, "not_as_asked");
+  EXPECT_TRUE(play.game.board_state().moves.empty());
+  // Put right by making the one that was meant.
+  play.put(meant);
+  ASSERT_TRUE(play.until(EventKind::move, 200));
+  EXPECT_EQ(play.game.board_state().moves, std::vector<std::string>{asked});
+}
+
+TEST(Game, with_all_pieces_real_what_was_captured_must_be_taken_off) {
+  Play play(both_real("B:W28,48:B22,1"), 1);
+  play.player_acts = false;
+  ASSERT_TRUE(play.until(EventKind::turn));
+  Position half = play.position();
+  half.dark = (half.dark & ~square_mask(22, 10)) | square_mask(33, 10);
+  play.put(half);
+  ASSERT_TRUE(play.until(EventKind::illegal_move, 200));
+  EXPECT_EQ(play.events.back().code, "captured_left_on_board");
+  EXPECT_EQ(play.events.back().squares, std::vector<int>{28});
+  half.light &= ~square_mask(28, 10);
+  play.put(half);
+  ASSERT_TRUE(play.until(EventKind::move, 200));
+  EXPECT_EQ(play.game.board_state().moves, std::vector<std::string>{"22x33"});
+}
+
+TEST(Game, with_all_pieces_real_a_piece_of_the_other_colour_is_not_the_same) {
+  Play play(both_real("B:W48:B22,1"), 1);
+  play.player_acts = false;
+  ASSERT_TRUE(play.until(EventKind::turn));
+  Position changed = play.position();
+  changed.dark &= ~square_mask(1, 10);
+  changed.light |= square_mask(1, 10);
+  play.put(changed);
+  ASSERT_TRUE(play.until(EventKind::illegal_move, 200));
+  EXPECT_TRUE(play.game.board_state().moves.empty());
+}
+
 TEST(Game, two_runs_are_equal) {
   Play a(options_from(), 11);
   Play b(options_from(), 11);

@@ -32,6 +32,7 @@ struct Table {
   int n = 10;
   Side side = Side::dark;
   Bits pieces = 0;
+  std::optional<Bits> light;  // where both sides' pieces are real: those of them that are light
   std::vector<Cell> strays;
 
   Occupancy seen(std::int64_t frame, bool hand) const {
@@ -46,7 +47,8 @@ struct Table {
         const auto square = square_of_cell({row, col}, n);
         cell.reading = CellReading::empty;
         if (square && (pieces & square_mask(*square, n)) != 0) {
-          cell.reading = side == Side::dark ? CellReading::dark : CellReading::light;
+          const bool is_dark = light ? (*light & square_mask(*square, n)) == 0 : side == Side::dark;
+          cell.reading = is_dark ? CellReading::dark : CellReading::light;
         }
         if (hand && col >= 2 && col <= 5) cell.reading = CellReading::unknown;
       }
@@ -146,8 +148,10 @@ struct Play {
   std::int64_t frame = 0;
   bool player_acts = true;
   bool player_removes = true;
-  int hand_frames = 0;  // the hand covers the board for so long
-  Bits after_hand = 0;  // and then the pieces stand so
+  bool player_does_favours = true;  // where all pieces are real: makes the virtual player's moves for him
+  int hand_frames = 0;              // the hand covers the board for so long
+  Bits after_hand = 0;              // and then the pieces stand so
+  Bits light_after_hand = 0;
   bool hand_is_over = false;
   int rest_frames = 0;
   std::vector<GameEvent> events;
@@ -162,6 +166,10 @@ struct Play {
     table.n = rules().squares;
     table.side = other(o.virtual_side);
     table.pieces = pieces_of(position(), table.side);
+    if (o.both_real) {
+      table.pieces = position().light | position().dark;
+      table.light = position().light;
+    }
   }
 
   const Rules& rules() const { return *find_rules(options.rules); }
@@ -173,11 +181,18 @@ struct Play {
     hand_is_over = true;
   }
 
+  // All pieces, of both sides.
+  void put(const Position& p) {
+    light_after_hand = p.light;
+    put(p.light | p.dark);
+  }
+
   void player() {
     if (hand_is_over) {
       if (--hand_frames <= 0) {
         hand_is_over = false;
         table.pieces = after_hand;
+        if (table.light) table.light = light_after_hand;
         rest_frames = 15;
       }
       return;
@@ -191,6 +206,7 @@ struct Play {
       MoveList legal;
       generate(rules(), p, legal);
       const Move& move = legal[static_cast<int>(next_random(random) % static_cast<std::uint64_t>(legal.size()))];
+      if (options.both_real) return put(after(rules(), p, move));
       if (move.from == move.to) return;
       put((pieces_of(p, table.side) & ~one(move.from)) | one(move.to));
     }
@@ -223,6 +239,9 @@ struct Play {
           std::to_string(frame) + " " + std::to_string(static_cast<int>(e.kind)) + " " + e.code + " " + e.move;
       for (const int square : e.squares) text += " " + std::to_string(square);
       log.push_back(text);
+      if (e.code == "make_it_for_me" && player_does_favours) {
+        put(after(rules(), position(), *read_move(rules(), position(), e.move)));
+      }
       if (e.kind == EventKind::turn && renderer.drawn(options.board) == pieces_of(position(), options.virtual_side)) {
         ++moves_drawn_right;
       }

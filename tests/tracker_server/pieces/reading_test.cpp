@@ -209,5 +209,30 @@ TEST(PieceReader, AnArmOverHalfTheBoardIsNoBoard) {
   }
 }
 
+TEST(PieceReader, BothSidesPiecesKeepTheirColours) {
+  BoardScene scene = game_scene();
+  scene.pieces = test::start_position(scene.board);
+  PieceReader reader(10);
+  reader.expect(std::string(20, 'b') + std::string(10, 'e') + std::string(20, 'w'));
+  FrameStamp stamp;
+  Occupancy seen;
+  const auto look = [&](int pictures) {
+    const BoardView view = view_board(test::paint(scene, 2), 10, to_pixel(scene));
+    for (int i = 0; i < pictures; ++i) {
+      stamp.capture_ns += 40'000'000;
+      seen = reader.read(view, stamp).occupancy;
+    }
+  };
+  look(8);
+  EXPECT_EQ(wrong_cells(scene, seen.cells), 0);
+  // A light man takes a dark one's square.
+  const Cell from = cell_of_square(31, 10), to = cell_of_square(20, 10);
+  std::erase_if(scene.pieces, [&](const test::PaintedPiece& piece) { return piece.cell == to; });
+  for (test::PaintedPiece& piece : scene.pieces)
+    if (piece.cell == from) piece.cell = to;
+  look(4);
+  EXPECT_EQ(wrong_cells(scene, seen.cells), 0);
+}
+
 }  // namespace
 }  // namespace counterpart
