@@ -221,9 +221,9 @@ Result<void> Room::State::build() {
   piece_shadow.visible = hand_shadow.visible = false;
   add(pieces, piece_shape(board, options.width > 800 ? 28 : 16),
       {wooden, grain, {0.085f, 0.032f, 0.016f}, 0.22f, 36, false}, here, false);
-  add(hand, blended(hand_capsules(radius), kFingersMelt_m, options.width > 800 ? 0.0042f : 0.0055f),
+  add(hand, blended(hand_capsules(radius), kFingersMelt_m, options.width > 800 ? 0.0042f : 0.0075f),
       {skin, TextureId::white, {0.62f, 0.36f, 0.26f}, 0.10f, 14, false}, here, false);
-  add(wrist, blended(wrist_capsules(), 0.01f, 0.007f),
+  add(wrist, blended(wrist_capsules(), 0.01f, 0.010f),
       {skin, TextureId::white, {0.62f, 0.36f, 0.26f}, 0.10f, 14, false}, here, true);
   const Material cloth_material{SurfaceId::lit, cloth, shirt, 0.01f, 8, true};
   add(forearm, sleeve_mesh(static_cast<float>(kSleeve_m), kSleeveNear_m, kSleeveFar_m), cloth_material, here, true);

@@ -231,10 +231,10 @@ std::vector<float> scores_of(const std::vector<CellLook>& cells, int squares, co
                              const SquareCalibration& calibration) {
   std::vector<float> scores(cells.size(), -1);
   const BoardLight light = board_light(cells, squares);
-  const double noise = calibration.more_noise(light);
+  const ExtraNoise extra = calibration.extra_noise(light);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (!cells[i].seen || only_glare(cells[i], usual[parity_of(i, squares)])) continue;
-    scores[i] = static_cast<float>(calibration.score(features_of(cells[i], light.step, noise)));
+    scores[i] = static_cast<float>(calibration.score(features_of(cells[i], light.step, extra)));
   }
   return scores;
 }

@@ -19,13 +19,14 @@ constexpr double most_noise = 4;       // times the usual, in steps
 
 }  // namespace
 
-SquareFeatures features_of(const CellLook& look, double step, double noise) {
+SquareFeatures features_of(const CellLook& look, double step, const ExtraNoise& extra) {
   const double scale = std::max(step, 1.0);
   const Colour offset = look.middle - look.ground;
   // Independent of what stands there, noise adds to it as squares.
-  const double busy = look.structure / scale, least_busy = 0.5 / scale;
+  const double busy = std::max(look.structure, 0.5F) / scale;
+  const double least = std::min(busy, extra.least);
   SquareFeatures features;
-  features << 0.5 * std::log2(std::max(busy * busy - noise, least_busy * least_busy)),
+  features << 0.5 * std::log2(std::max(busy * busy - extra.square, least * least)),
       std::log2(std::max(look.difference, 0.5F) / scale), offset.light / scale, offset.red_green / scale,
       offset.warm_cold / scale;
   return features;
@@ -54,9 +55,7 @@ bool SquareCalibration::learn(const std::vector<KnownSquare>& squares, const Boa
   empty_ += share * (mean[0] - empty_);
   taken_ += share * (mean[1] - taken_);
   scatter_ += share * (scatter - scatter_);
-  // What is noisier than usual was brought to the usual before it was learned.
-  const double floor = share == 1 ? light.floor : std::min(light.floor, light_.floor / light_.step * light.step);
-  light_.floor += share * (floor - light_.floor);
+  light_.floor += share * (light.floor - light_.floor);
   light_.step += share * (light.step - light_.step);
   update();
 
@@ -84,10 +83,12 @@ double SquareCalibration::score(const SquareFeatures& features) const {
   return apart > 0 ? 2 * direction_.dot(features - 0.5 * (empty_ + taken_)) / apart : 0;
 }
 
-double SquareCalibration::more_noise(const BoardLight& light) const {
-  if (!ready_ || !(light.step > 0)) return 0;
+ExtraNoise SquareCalibration::extra_noise(const BoardLight& light) const {
+  if (!ready_ || !(light.step > 0)) return {};
+  constexpr double play = 1.15;  // from picture to picture
   const double now = light.floor / light.step, usual = light_.floor / light_.step;
-  return std::max(0.0, now * now - usual * usual);
+  if (now < play * usual) return {};
+  return {now * now - play * play * usual * usual, 0.7 * usual};
 }
 
 bool SquareCalibration::too_dark(const BoardLight& light) const {

@@ -14,8 +14,13 @@ namespace counterpart {
 // step between the board's two colours, which goes up and down with the light.
 using SquareFeatures = Eigen::Matrix<double, 5, 1>;
 
-// noise: what the picture has more of it than the usual one, squared, in steps (see SquareCalibration::more_noise).
-SquareFeatures features_of(const CellLook& look, double step, double noise = 0);
+// Noise does not go down with the light: in a dim picture it makes empty squares busy. In steps.
+struct ExtraNoise {
+  double square = 0;  // of what the picture has more of it than usual
+  double least = 0;   // no square is less busy than this without it
+};
+
+SquareFeatures features_of(const CellLook& look, double step, const ExtraNoise& extra = {});
 
 struct KnownSquare {
   SquareFeatures features;
@@ -36,9 +41,8 @@ class SquareCalibration {
   // -1: as the usual empty square, 1: as the usual piece. Only if ready.
   double score(const SquareFeatures& features) const;
 
-  // Noise does not go down with the light: it makes empty squares busy. By how much more than in the pictures that were
-  // learned from, squared, in steps.
-  double more_noise(const BoardLight& light) const;
+  // Compared with the pictures that were learned from.
+  ExtraNoise extra_noise(const BoardLight& light) const;
 
   // Whether so little light has come since that what is learned does not hold.
   bool too_dark(const BoardLight& light) const;

@@ -99,13 +99,13 @@ void PieceReader::learn(const BoardView& view, const std::vector<CellLook>& look
   if (static_cast<int>(expected_.size()) != last) return;
   const BoardLight light = board_light(looks, squares_);
   if (calibration_.too_dark(light)) return;
-  const double noise = calibration_.more_noise(light);
+  const ExtraNoise extra = calibration_.extra_noise(light);
   std::vector<KnownSquare> known;
   for (int square = 1; square <= last; ++square) {
     const Cell cell = cell_of_square(square, squares_);
     const CellLook& look = looks[static_cast<std::size_t>(cell.row * squares_ + cell.col)];
     if (look.seen)
-      known.push_back({features_of(look, light.step, noise), expected_[static_cast<std::size_t>(square - 1)] != 'e'});
+      known.push_back({features_of(look, light.step, extra), expected_[static_cast<std::size_t>(square - 1)] != 'e'});
   }
   if (calibration_.learn(known, light)) learn_tolerance(view, looks, light);
 }

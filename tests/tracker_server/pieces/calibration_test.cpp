@@ -73,19 +73,19 @@ TEST(Calibration, NoiseInDimLightIsNotTakenForPieces) {
     }
     return std::pair{looks, seen};
   };
-  const auto known = [](const std::vector<CellLook>& looks, double scale, double noise) {
+  const auto known = [](const std::vector<CellLook>& looks, double scale, const ExtraNoise& extra) {
     std::vector<KnownSquare> result;
-    for (std::size_t i = 0; i < looks.size(); ++i) result.push_back({features_of(looks[i], scale, noise), i < 20});
+    for (std::size_t i = 0; i < looks.size(); ++i) result.push_back({features_of(looks[i], scale, extra), i < 20});
     return result;
   };
   SquareCalibration calibration;
   const auto [bright, daylit] = squares(1, 1);
-  calibration.learn(known(bright, daylit.step, 0), daylit);
+  calibration.learn(known(bright, daylit.step, {}), daylit);
   ASSERT_TRUE(calibration.ready());
   const auto [dim, dusk] = squares(0.35, 3.2);
   ASSERT_FALSE(calibration.too_dark(dusk));
-  EXPECT_EQ(right(calibration, known(dim, dusk.step, calibration.more_noise(dusk))), 50);
-  EXPECT_LT(right(calibration, known(dim, dusk.step, 0)), 40) << "this light is no trial";
+  EXPECT_EQ(right(calibration, known(dim, dusk.step, calibration.extra_noise(dusk))), 50);
+  EXPECT_LT(right(calibration, known(dim, dusk.step, {})), 40) << "this light is no trial";
   EXPECT_TRUE(calibration.too_dark({dusk.step, 25})) << "nothing but noise";
 }
 
