@@ -36,7 +36,7 @@ MeshData skirt_mesh(const Eigen::Vector3f& size_m) {
 // The upper face of a warped board.
 MeshData top_mesh(float side_m, int cells, const Warp& warp) {
   MeshData mesh = plane_mesh(side_m, side_m, cells, cells);
-  for (Eigen::Vector3f& p : mesh.positions_m) p.z() = static_cast<float>(warp_height_m(warp, p.x(), p.y()));
+  for (Eigen::Vector3f& p : mesh.positions_m) p.z() = static_cast<float>(warp.height_m(p.x(), p.y()));
   return mesh;
 }
 
@@ -99,8 +99,8 @@ struct Room::State {
   DrawItem hand, wrist, forearm, upper_arm;
   std::vector<DrawItem> objects;       // as in RoomOptions
   DrawItem piece_shadow, hand_shadow;  // coarser, and not seen themselves
+  Warp warp;                           // of the board's top
 
-  Warp warp() const;
   Lighting lighting(const World& world) const;
   std::vector<Circle> shadows_on_table(const World& world, const Lighting& light) const;
   std::vector<DrawItem> items(const World& world) const;
@@ -127,6 +127,7 @@ Result<void> Room::State::build() {
   const auto field = static_cast<float>(board.squares * board.square_size_m);
   const float side = field + 2 * static_cast<float>(board.border_m);
   const auto thickness = static_cast<float>(board.thickness_m);
+  warp = Warp(options.warp_m, 0.5 * board.squares * board.square_size_m + board.border_m, options.warp_seed);
 
   const auto surface = [&r](const std::string& glsl, Shade shade, SurfaceId& slot) -> Result<void> {
     const Result<SurfaceId> made = r.add_surface(glsl, shade);
@@ -170,7 +171,7 @@ Result<void> Room::State::build() {
                                 Eigen::AngleAxisf(static_cast<float>(EIGEN_PI) / 2, Eigen::Vector3f::UnitX()));
   constexpr auto floor_z = static_cast<float>(kFloorZ_m);
   furniture.resize(9);
-  add(furniture[0].item, top_mesh(side, 14 * finer, warp()), {board_top, board_grain}, at(0, 0, 0), false);
+  add(furniture[0].item, top_mesh(side, 14 * finer, warp), {board_top, board_grain}, at(0, 0, 0), false);
   add(furniture[1].item, skirt_mesh({side, side, thickness}),
       {SurfaceId::lit, grain, {0.13f, 0.06f, 0.03f}, 0.1f, 30, false},
       at(0, 0, -thickness / 2 + 0.0002f + static_cast<float>(options.warp_m)),
@@ -244,11 +245,6 @@ Result<void> Room::State::build() {
   return made;
 }
 
-Warp Room::State::warp() const {
-  const BoardGeometry& board = options.board;
-  return {options.warp_m, 0.5 * board.squares * board.square_size_m + board.border_m, options.warp_seed};
-}
-
 Lighting Room::State::lighting(const World& world) const {
   const auto level = static_cast<float>(world.light);
   Lighting light;
@@ -301,8 +297,7 @@ std::vector<DrawItem> Room::State::items(const World& world) const {
   standing.X_BO.clear();
   for (const RealPiece& piece : world.pieces) {
     Eigen::Affine3f X_BO(Eigen::Translation3f(piece.p_B.cast<float>()));
-    if (piece.square != 0)
-      X_BO.translation().z() += static_cast<float>(warp_height_m(warp(), piece.p_B.x(), piece.p_B.y()));
+    if (piece.square != 0) X_BO.translation().z() += static_cast<float>(warp.height_m(piece.p_B.x(), piece.p_B.y()));
     X_BO.rotate(Eigen::AngleAxisf(static_cast<float>(piece.turn_rad), Eigen::Vector3f::UnitZ()));
     if (piece.roll_rad != 0) {
       const Eigen::Translation3f up(0, 0, static_cast<float>(world.board.piece_height_m) / 2);

@@ -10,13 +10,13 @@ namespace {
 
 TEST(Warp, IsAsLargeAsAskedAndHasNoLiftAndNoTilt) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const Warp warp{0.001, 0.23, seed};
+    const Warp warp(0.001, 0.23, seed);
     double largest = 0, lift = 0, tilt_x = 0, tilt_y = 0;
     constexpr int steps = 100;
     for (int i = 0; i < steps; ++i)
       for (int j = 0; j < steps; ++j) {
         const double x = (2 * (i + 0.5) / steps - 1) * 0.23, y = (2 * (j + 0.5) / steps - 1) * 0.23;
-        const double z = warp_height_m(warp, x, y);
+        const double z = warp.height_m(x, y);
         largest = std::max(largest, std::abs(z));
         lift += z;
         tilt_x += z * x;
@@ -32,7 +32,8 @@ TEST(Warp, IsAsLargeAsAskedAndHasNoLiftAndNoTilt) {
 }
 
 TEST(Warp, OfAFlatBoardIsNone) {
-  EXPECT_EQ(warp_height_m({0, 0.2, 3}, 0.1, 0.15), 0);
+  EXPECT_EQ(Warp(0, 0.2, 3).height_m(0.1, 0.15), 0);
+  EXPECT_EQ(Warp().height_m(0.1, 0.15), 0);
 }
 
 }  // namespace
