@@ -346,7 +346,8 @@ BoardLight board_light(const std::vector<CellLook>& cells, int squares) {
   std::vector<float> structures;
   for (std::size_t i = 0; i < cells.size(); i += floor_every)
     if (parity_of(i, squares) == 0 && cells[i].seen) structures.push_back(cells[i].structure);
-  return {length(usual[0] - usual[1]), structures.empty() ? 0 : median(structures)};
+  constexpr float least = 1;  // no camera is quite without noise
+  return {length(usual[0] - usual[1]), structures.empty() ? least : std::max(least, median(structures))};
 }
 
 Reading read_appearance(const std::vector<CellLook>& cells, int squares, const Foreknowledge& known) {
