@@ -84,16 +84,6 @@ void Actor::move_arm(std::size_t side, const ArmDrive& drive, double now_s) {
   goal.wrist_S = controls_.pelvis_S + heading * goal.wrist_S;
   goal.R_SW = (heading * goal.R_SW).normalized();
   shown_arms_[side] = goal;
-  // No hand passes through its own shoulder: it goes round it in front.
-  constexpr float nearest_m = 0.20F;
-  const Vector3f shoulder = solved_.pose.p_S[at(anatomy_->arms[side].limb.root)];
-  const Vector3f away = goal.wrist_S - shoulder;
-  const float missing = nearest_m - away.norm();
-  if (missing > 0) {
-    const float outward = side == right_side ? 0.5F : -0.5F;
-    const Vector3f round = heading * Vector3f(outward, 1, -0.5F).normalized() * missing;
-    shown_arms_[side].wrist_S = shoulder + (away + round).normalized() * nearest_m;
-  }
 }
 
 std::uint64_t Actor::rest_source() const {
@@ -123,6 +113,7 @@ BodyControls& Actor::begin(double now_s) {
     stand(place_, home_, *anatomy_, controls_);
   }
   controls_.table_z_m = home_.table_z;
+  controls_.board_half_m = home_.board_half_m;
   controls_.table_edge_y_m = posture_ == Posture::seated && !going() ? home_.table_edge_y : 1e3F;
   add_idle(now_s - start_s_, seed_, seatedness_, controls_);
   return controls_;

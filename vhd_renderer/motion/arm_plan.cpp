@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include "vhd_renderer/motion/curves.hpp"
 #include "vhd_renderer/motion/limb.hpp"
@@ -23,6 +24,12 @@ constexpr int glances = 7;                // to either side of the wanted lift .
 constexpr int glances_all_round = 24;     // ... and where the elbow may be anywhere
 constexpr float margin_rad = radians(2);  // kept from the end of a shoulder's range
 
+// 1 for a hand on the table he sits at, 0 for one that is well over it or not at the table.
+float on_table(const Vector3f& wrist_S, const BodyControls& c) {
+  const float low = 1 - minimum_jerk((wrist_S.z() - c.table_z_m - 0.06F) / 0.10F);
+  return low * unit_clamp((wrist_S.y() - c.table_edge_y_m) / 0.03F);
+}
+
 // One arm in one frame.
 struct Arm {
   const Limb& limb;
@@ -33,10 +40,27 @@ struct Arm {
   Quaternionf trunk;
   Quaternionf heading;
   float side;
+  float lies;  // on the table, 0..1: the hand, as it is meant to
   const ArmMemory* before;
 
   Swivel swivel(const Vector3f& wrist_S) const { return Swivel::of_arm(heading, shoulder_S, wrist_S, side); }
 };
+
+// No hand comes nearer to its own shoulder than an arm can be folded. One in the air goes round it in front; one that
+// lies on the table, when its owner bends over it, slides outwards.
+Vector3f off_shoulder(const Arm& arm, const Vector3f& wrist_S) {
+  constexpr float nearest_m = 0.20F;
+  const Vector3f away = wrist_S - arm.shoulder_S;
+  const float missing = nearest_m - away.norm();
+  if (missing <= 0) return wrist_S;
+  const Vector3f in_front = arm.heading * Vector3f(0.5F * arm.side, 1, -0.5F).normalized() * missing;
+  const Vector3f round_S = arm.shoulder_S + (away + in_front).normalized() * nearest_m;
+  const Vector3f flat(away.x(), away.y(), 0);
+  const float nearest_flat_m = std::sqrt(nearest_m * nearest_m - away.z() * away.z());
+  const Vector3f aside = arm.heading * Vector3f(arm.side, 0, 0) * (nearest_flat_m - flat.norm());
+  const Vector3f slid_S = arm.shoulder_S + Vector3f(0, 0, away.z()) + (flat + aside).normalized() * nearest_flat_m;
+  return round_S + (slid_S - round_S) * arm.lies;
+}
 
 // The lift nearest to the wanted one that keeps elbow and forearm out of the table, upwards first.
 float clear_of_table(const Arm& arm, const Vector3f& wrist_S, const Swivel& swivel, float wanted) {
@@ -103,8 +127,9 @@ ArmPlan try_lift(const Arm& arm, const Vector3f& wrist_S, const Swivel& swivel, 
   return plan;
 }
 
-// The wrist there, the elbow as near to where the goal and the table have it as can be.
-ArmPlan try_wrist(const Arm& arm, const Vector3f& wrist_S, float fastest_rad_s = fastest_lift_rad_s) {
+// The wrist there, if that is not in his shoulder, the elbow as near to where the goal and the table have it as can be.
+ArmPlan try_wrist(const Arm& arm, const Vector3f& wanted_S, float fastest_rad_s = fastest_lift_rad_s) {
+  const Vector3f wrist_S = off_shoulder(arm, wanted_S);
   const Swivel swivel = arm.swivel(wrist_S);
   float wanted = clear_of_table(arm, wrist_S, swivel, arm.goal.swivel_rad);
   float low = wanted - pi_f;
@@ -142,18 +167,29 @@ ArmPlan plan_arm(const Anatomy& a, const BodyControls& c, const ArmGoal& goal, c
                 pose.G[at(chest)],
                 Quaternionf(AngleAxisf(c.heading_rad, Vector3f::UnitZ())),
                 s == right_side ? 1.F : -1.F,
+                on_table(c.arms[s].wrist_S, c),
                 before};
   ArmPlan best = try_wrist(arm, arm.goal.wrist_S);
-  if (best.strain_rad <= 0 || before == nullptr || c.dt_s <= 0) return best;
-  // Then a part of the way there from where the wrist was.
-  const Vector3f from = arm.trunk_S + arm.trunk * before->wrist_T;
-  for (const float fastest_rad_s : {fastest_lift_rad_s, hurried_lift_rad_s}) {
-    for (const float share : {0.8F, 0.6F, 0.4F, 0.25F, 0.1F, 0.F}) {
-      ArmPlan part = try_wrist(arm, from + (arm.goal.wrist_S - from) * share, fastest_rad_s);
+  const auto try_places = [&](const Vector3f& from, const Vector3f& to, std::initializer_list<float> shares,
+                              float fastest_rad_s) {
+    for (const float share : shares) {
+      if (best.strain_rad <= 0) return;
+      ArmPlan part = try_wrist(arm, from + (to - from) * share, fastest_rad_s);
       if (part.strain_rad < best.strain_rad) best = std::move(part);
-      if (best.strain_rad <= 0) return best;
+    }
+  };
+  // Then a part of the way there from where the wrist was.
+  const bool was_somewhere = before != nullptr && c.dt_s > 0;
+  const Vector3f was_S = was_somewhere ? Vector3f(arm.trunk_S + arm.trunk * before->wrist_T) : arm.goal.wrist_S;
+  if (was_somewhere) {
+    for (const float fastest_rad_s : {fastest_lift_rad_s, hurried_lift_rad_s}) {
+      try_places(was_S, arm.goal.wrist_S, {0.8F, 0.6F, 0.4F, 0.25F, 0.1F, 0.F}, fastest_rad_s);
     }
   }
+  // Then back to where any arm is at its ease.
+  const Vector3f at_ease_S =
+      arm.shoulder_S + arm.trunk * Vector3f(0.15F * arm.side, 0.6F, -0.35F) * arm.limb.length_m();
+  try_places(was_S, at_ease_S, {0.1F, 0.2F, 0.4F, 0.6F, 0.8F, 1.F}, hurried_lift_rad_s);
   return best;
 }
 

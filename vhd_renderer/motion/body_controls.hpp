@@ -58,6 +58,7 @@ struct BodyControls {
   float dt_s = 0;                 // since the frame before; 0: there was none
   float table_z_m = -0.015F;      // elbows and forearms stay above it ...
   float table_edge_y_m = -0.36F;  // ... beyond this line; far away when he does not sit at it
+  float board_half_m = 0;         // half a side of the board that lies on it, its top at z = 0; 0: none does
   std::map<std::string, float> morphs;
   float jaw_rad = 0;
 };

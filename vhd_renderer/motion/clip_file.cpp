@@ -7,6 +7,7 @@
 #include <sstream>
 #include <unordered_map>
 
+#include <assimp/BaseImporter.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
@@ -56,6 +57,16 @@ class BesideOnly : public Assimp::DefaultIOSystem {
 
   fs::path folder_;
 };
+
+// The readers of all other formats, which would be tried by the looks of a file, never see it.
+void keep_clip_readers(Assimp::Importer& importer) {
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    const std::string kinds = importer.GetImporterInfo(i)->mFileExtensions;
+    if (kinds == "bvh" || kinds == "gltf glb") continue;
+    Assimp::BaseImporter* const reader = importer.GetImporter(i);
+    if (importer.UnregisterLoader(reader) == AI_SUCCESS) delete reader;  // ours from here on
+  }
+}
 
 Vector3f vector(const aiVector3D& v) {
   return {v.x, v.y, v.z};
@@ -483,6 +494,7 @@ Result<Clip> read_clip_file(const fs::path& path) {
   } else {
     if (path.extension() == ".glb" && !is_whole_glb(*bytes)) return bad(path, "it is no GLB file, or cut off");
     Assimp::Importer importer;
+    keep_clip_readers(importer);
     importer.SetIOHandler(new BesideOnly(path.parent_path()));  // the importer's from here on
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
     const aiScene* scene = importer.ReadFile(path.string(), 0);

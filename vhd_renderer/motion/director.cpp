@@ -59,7 +59,7 @@ void Director::State::set_scene(const Scene& next) {
   gripped = {radius, height, square};
   grips_fit = true;
   for (const std::size_t s : {left_side, right_side}) {
-    grips[s] = grip_on_piece(*figure, anatomy.arms[s].hand, gripped);
+    grips[s] = grip_source(*figure, anatomy.arms[s].hand, gripped);
   }
 }
 
@@ -277,10 +277,12 @@ Performance Director::State::performance() const {
   return p;
 }
 
-Director::Director(const Figure& figure, Speaker speaker, ClipLibrary clips) : state_(std::make_unique<State>()) {
+Director::Director(const Figure& figure, Speaker speaker, ClipLibrary clips, GripSource grips)
+    : state_(std::make_unique<State>()) {
   State& s = *state_;
   s.speaker = std::move(speaker);
   s.library = std::move(clips);
+  s.grip_source = std::move(grips);
   s.figure = &figure;
   std::set<std::string> names;
   for (const FigurePart& part : figure.parts) {

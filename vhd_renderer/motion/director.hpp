@@ -15,6 +15,7 @@
 #include "protocol/vocabulary/scene.hpp"
 #include "vhd_renderer/body/figure.hpp"
 #include "vhd_renderer/motion/clip.hpp"
+#include "vhd_renderer/motion/kept_grips.hpp"
 #include "vhd_renderer/voice/sound.hpp"
 
 namespace counterpart {
@@ -49,7 +50,8 @@ class Director {
  public:
   // The figure has to outlive the director. A figure without the joints that motion needs stands still, and every
   // command fails with "no_skeleton". `clips`: what a keyframe command may name.
-  explicit Director(const Figure& figure, Speaker speaker = {}, ClipLibrary clips = clip_library());
+  explicit Director(const Figure& figure, Speaker speaker = {}, ClipLibrary clips = clip_library(),
+                    GripSource grips = grip_on_piece);
   Director(Director&&) noexcept;
   ~Director();
 

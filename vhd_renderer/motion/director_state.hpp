@@ -82,6 +82,7 @@ struct Director::State {
   Scene scene;
   bool dark = false;  // B is S turned by half a circle
   std::vector<PieceOnStage> pieces;
+  GripSource grip_source;
   std::array<Grip, 2> grips;
   GripTarget gripped;  // what the grips were made for
   bool grips_fit = false;

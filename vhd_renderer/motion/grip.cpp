@@ -262,11 +262,17 @@ Grip grip_on_piece(const Figure& figure, const HandParts& hand, const GripTarget
   for (const std::size_t f : gripping) {
     grip.residual_mm = std::max(grip.residual_mm, 1000 * std::abs(fits[f].from_disc_m));
   }
-  const Eigen::Isometry3f X_PW = grip.X_WP.inverse();
-  for (const auto& part : skin.places_W(grip.open)) {
-    for (const Vector3f& p_W : part) grip.open_skin_P.push_back(X_PW * p_W);
-  }
+  grip.open_skin_P = open_skin_P(figure, hand, grip);
   return grip;
+}
+
+std::vector<Vector3f> open_skin_P(const Figure& figure, const HandParts& hand, const Grip& grip) {
+  const Eigen::Isometry3f X_PW = grip.X_WP.inverse();
+  std::vector<Vector3f> places_P;
+  for (const auto& part : HandSkin(figure, hand).places_W(grip.open)) {
+    for (const Vector3f& p_W : part) places_P.push_back(X_PW * p_W);
+  }
+  return places_P;
 }
 
 }  // namespace counterpart

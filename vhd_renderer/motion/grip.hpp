@@ -27,4 +27,7 @@ struct Grip {
 // neighbours: found by Gauss-Newton, then closed until each finger's skin touches the rim.
 Grip grip_on_piece(const Figure& figure, const HandParts& hand, const GripTarget& target);
 
+// The whole open hand's skin in the grip frame.
+std::vector<Eigen::Vector3f> open_skin_P(const Figure& figure, const HandParts& hand, const Grip& grip);
+
 }  // namespace counterpart

@@ -3,6 +3,7 @@
 #include "vhd_renderer/motion/arm_plan.hpp"
 #include "vhd_renderer/motion/body_controls.hpp"
 #include "vhd_renderer/motion/curves.hpp"
+#include "vhd_renderer/motion/hand_lift.hpp"
 #include "vhd_renderer/motion/limb.hpp"
 #include "vhd_renderer/motion/pose.hpp"
 
@@ -198,26 +199,6 @@ void set_head(const Figure& figure, const Anatomy& a, const BodyControls& c, con
   }
 }
 
-// Where finger tips and knuckles are at their lowest, over the wrist.
-float lowest_of(const Figure& figure, const HandParts& hand, const HandShape& shape, const Quaternionf& R_SW) {
-  float lowest = 0;
-  for (std::size_t f = 0; f < hand.fingers.size(); ++f) {
-    lowest = std::min(lowest, (R_SW * fingertip_W(figure, hand, shape, f).tip).z());
-  }
-  return lowest;
-}
-
-// A hand that its wrist does not let lie as it should would dip into what it lies on: by so much it has to be lifted.
-float dip_of(const Figure& figure, const HandParts& hand, const BodyControls& c, const ArmGoal& goal,
-             const Quaternionf& R_SW) {
-  if (goal.wrist_S.y() < c.table_edge_y_m || R_SW.angularDistance(goal.R_SW) < radians(0.5F)) return 0;
-  const float wanted = lowest_of(figure, hand, goal.shape, goal.R_SW);
-  const float over_table = goal.wrist_S.z() + wanted - c.table_z_m;
-  const float near = 1 - minimum_jerk((over_table - 0.03F) / 0.04F);
-  const float inside = unit_clamp((goal.wrist_S.y() - c.table_edge_y_m) / 0.03F);
-  return near * inside * std::max(0.F, wanted - lowest_of(figure, hand, goal.shape, R_SW));
-}
-
 // One arm, its hand as its goal says as far as the wrist lets it. Returns how the hand is turned.
 Quaternionf set_arm(const Figure& figure, const Anatomy& a, const BodyControls& c, const ArmGoal& goal, std::size_t s,
                     const ArmMemory* before, SolvedBody& solved, ArmMemory& memory) {
@@ -256,12 +237,19 @@ Quaternionf set_arm(const Figure& figure, const Anatomy& a, const BodyControls& 
 ArmMemory set_arm(const Figure& figure, const Anatomy& a, const BodyControls& c, std::size_t s, SolvedBody& solved) {
   const HandParts& hand = a.arms[s].hand;
   const ArmMemory* before = solved.before ? &solved.before->arms[s] : nullptr;
+  const FingerEnds ends_W = finger_ends_W(figure, hand, c.arms[s].shape);
+  const Vector3f& wrist_S = solved.pose.p_S[at(hand.wrist)];
   ArmGoal goal = c.arms[s];
   ArmMemory memory;
-  const Quaternionf R_SW = set_arm(figure, a, c, goal, s, before, solved, memory);
-  if (const float dip = dip_of(figure, hand, c, goal, R_SW); dip > 0) {
-    goal.wrist_S.z() += dip;
-    set_arm(figure, a, c, goal, s, before, solved, memory);
+  Quaternionf R_SW = set_arm(figure, a, c, goal, s, before, solved, memory);
+  // Lifted, its wrist may turn the hand farther: after a few times what is left does not show.
+  constexpr int most_rounds = 4;
+  constexpr float enough_m = 0.0002F;
+  for (int round = 0; round < most_rounds; ++round) {
+    const float lift = lift_out_of_table(c, c.arms[s], ends_W, wrist_S, R_SW);
+    if (lift < enough_m) break;
+    goal.wrist_S.z() += lift;
+    R_SW = set_arm(figure, a, c, goal, s, before, solved, memory);
   }
   apply(figure, hand, goal.shape, solved.pose);
   return memory;

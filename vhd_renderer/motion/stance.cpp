@@ -92,6 +92,7 @@ Home home_of(const Scene& scene, const Anatomy& a, const std::array<float, 2>& r
   const auto edge = static_cast<float>(0.5 * scene.board.squares * scene.board.square_size_m + scene.board.border_m);
   home.floor_z = floor;
   home.table_z = static_cast<float>(-scene.board.thickness_m);
+  home.board_half_m = edge;
   home.table_edge_y = table_edge_y(scene, -edge - usual_table_beyond_board_m);
   home.seat_y = home.table_edge_y - 0.02F - a.belly_m;
   home.seat_hip_z = floor + chair_seat_m + a.seat_to_hip_m;

@@ -22,6 +22,7 @@ struct Home {
   float floor_z = -0.74F;
   float table_z = -0.015F;
   float table_edge_y = -0.42F;  // of the table, on his side
+  float board_half_m = 0.23F;   // half a side of the board, its rim included
   float seat_y = -0.51F;        // of the hips when he sits at the board
   float seat_hip_z = -0.19F;    // height of the hip joints then
   float chair_back_y = -0.90F;  // of the hips when he has just sat down

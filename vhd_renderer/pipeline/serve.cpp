@@ -45,7 +45,7 @@ class RendererDaemon {
         director_(figure_,
                   espeak_speaker(voice_of(options.character),
                                  options.lockstep ? Speaking::at_once : Speaking::in_the_background),
-                  std::move(clips)) {}
+                  std::move(clips), grips_kept_in(default_cache() / "grips")) {}
 
   [[nodiscard]] Result<void> open_outputs();
   [[nodiscard]] Result<void> run();

@@ -7,7 +7,6 @@
 #include <sstream>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
 #include "protocol/codec/json.hpp"
@@ -19,6 +18,7 @@
 #include "vhd_renderer/output/output.hpp"
 #include "vhd_renderer/programs/backdrop.hpp"
 #include "vhd_renderer/programs/script.hpp"
+#include "vhd_renderer/programs/trace.hpp"
 #include "vhd_renderer/scene/virtual_scene.hpp"
 #include "vhd_renderer/voice/espeak.hpp"
 
@@ -40,20 +40,6 @@ struct PlayOptions {
   double fps = 25;
   double seconds = 0;  // 0: until every command has ended
 };
-
-nlohmann::json trace_of(std::int64_t frame, std::int64_t now_ns, const Figure& figure, const Performance& p) {
-  nlohmann::json joints = nlohmann::json::array();
-  for (std::size_t j = 0; j < p.X_BJ.size(); ++j) {
-    const Eigen::Vector3f& t = p.X_BJ[j].translation();
-    joints.push_back({{"name", figure.joints[j].name}, {"x", t.x()}, {"y", t.y()}, {"z", t.z()}});
-  }
-  nlohmann::json pieces = nlohmann::json::array();
-  for (const StagedPiece& piece : p.pieces) {
-    const Eigen::Vector3f& t = piece.X_BP.translation();
-    pieces.push_back({{"name", piece.name}, {"x", t.x()}, {"y", t.y()}, {"z", t.z()}});
-  }
-  return {{"frame", frame}, {"t", 1e-9 * static_cast<double>(now_ns)}, {"joints", joints}, {"pieces", pieces}};
-}
 
 // WIDTHxHEIGHT
 Result<Backdrop> backdrop_of(const PlayOptions& options) {
@@ -148,10 +134,10 @@ Result<void> play(const PlayOptions& options) {
   if (!figure) return tl::make_unexpected(figure.error());
   auto clips = clips_with_folder(options.clips);
   if (!clips) return tl::make_unexpected(clips.error());
-  std::ofstream trace;
+  std::ofstream trace_file;
   if (!options.trace.empty()) {
-    trace.open(options.trace);
-    if (!trace) return failure(ErrorCode::io, "cannot write the trace " + options.trace);
+    trace_file.open(options.trace);
+    if (!trace_file) return failure(ErrorCode::io, "cannot write the trace " + options.trace);
   }
 
   std::optional<Film> film;
@@ -162,7 +148,9 @@ Result<void> play(const PlayOptions& options) {
   }
 
   Director director(*figure, options.mute ? Speaker{} : espeak_speaker(voice_of(opponent), Speaking::at_once),
-                    std::move(*clips));
+                    std::move(*clips), grips_kept_in(default_cache() / "grips"));
+  std::optional<Trace> trace;
+  if (trace_file.is_open()) trace.emplace(*figure, director);
   Scene shown;
   const auto limit = static_cast<std::int64_t>((options.seconds > 0 ? options.seconds : 3600) * options.fps);
   std::size_t next = 0;
@@ -192,7 +180,7 @@ Result<void> play(const PlayOptions& options) {
     if (film) {
       if (auto added = film->add(behind, shown, director, performance, inputs.now_ns); !added) return added;
     }
-    if (trace.is_open()) trace << trace_of(frame, inputs.now_ns, *figure, performance).dump() << '\n';
+    if (trace) trace_file << trace->line(frame, inputs.now_ns, performance).dump() << '\n';
     // A second of stillness at the end.
     if (open == 0 && next == script->size() && options.seconds <= 0 && last == limit) {
       last = frame + static_cast<std::int64_t>(options.fps);
@@ -202,7 +190,7 @@ Result<void> play(const PlayOptions& options) {
   if (film) {
     if (auto finished = film->finish(); !finished) return finished;
   }
-  if (trace.is_open() && !trace.flush()) return failure(ErrorCode::io, "the trace could not be written whole");
+  if (trace && !trace_file.flush()) return failure(ErrorCode::io, "the trace could not be written whole");
   return {};
 }
 
@@ -213,7 +201,8 @@ void add_play(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("play", "Plays a script of commands offline; every answer is a JSON line on stdout");
   command->add_option("script", options->script, "JSON lines: commands and scenes with at_ms")->required();
-  command->add_option("--trace", options->trace, "a JSON line a frame: every joint and piece in B, metres");
+  command->add_option("--trace", options->trace,
+                      "a JSON line a frame: every joint, piece and the fingertips' skin in B, metres");
   command->add_option("--out", options->out, "FILE.mp4, or a folder for pictures; without it nothing is drawn");
   command->add_option("--background", options->background,
                       "a SEQUENCE folder: pictures, camera.json, poses.csv; without it a plain room is painted");

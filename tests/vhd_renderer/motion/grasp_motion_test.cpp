@@ -34,6 +34,16 @@ TEST(Grasp, NoHandGoesThroughAnotherPieceOrTheTable) {
   EXPECT_LT(f.in_table_mm, 1.F) << f.where_in_table;
 }
 
+// Who is short comes up from his chair and bends over his other hand, which lies before the board.
+TEST(Grasp, TheRestingHandMakesRoomForItsOwnersShoulder) {
+  for (const float scale : {0.7F, 0.85F}) {
+    const ClearanceFigures f = measure_clearance(scaled(mannequin(), scale), 12, 5);
+    EXPECT_EQ(f.failed, 0) << scale;
+    EXPECT_LT(f.in_pieces_mm, 1.F) << scale << ": " << f.where;
+    EXPECT_LT(f.in_table_mm, 1.F) << scale << ": " << f.where_in_table;
+  }
+}
+
 // Crowning: a lost piece from beside the board goes on top of a man among others.
 TEST(Grasp, StacksAPieceOnAManAndTouchesNothingElse) {
   Scene scene = board_with({{"light_2", 2}, {"light_7", 7}, {"light_8", 8}});

@@ -127,6 +127,20 @@ Figure flesh_of(const Figure& figure, const std::vector<std::string>& joint_star
   return flesh;
 }
 
+Figure scaled(Figure figure, float scale) {
+  for (Joint& joint : figure.joints) {
+    joint.X_PJ.translation() *= scale;
+    joint.X_HJ.translation() *= scale;
+  }
+  for (FigurePart& part : figure.parts) {
+    for (Vector3f& p : part.positions_m) p *= scale;
+    for (Morph& morph : part.morphs) {
+      for (Vector3f& offset : morph.offsets_m) offset *= scale;
+    }
+  }
+  return figure;
+}
+
 std::vector<Vector3f> skin_places(const Figure& flesh, const Rehearsal& rehearsal) {
   std::vector<SkinnedPart> parts;
   skin(flesh, rehearsal.director.morph_names(), rehearsal.last, parts);

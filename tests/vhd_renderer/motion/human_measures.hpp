@@ -29,6 +29,9 @@ float distance_to_piece(const Eigen::Vector3f& p, const Eigen::Vector3f& foot, c
 // The figure with those vertices only that go at least half with joints whose names start with one of these.
 Figure flesh_of(const Figure& figure, const std::vector<std::string>& joint_starts);
 
+// The same figure larger or smaller.
+Figure scaled(Figure figure, float scale);
+
 // Where its skin is shown, in B; by part of the flesh.
 std::vector<Eigen::Vector3f> skin_places(const Figure& flesh, const Rehearsal& rehearsal);
 

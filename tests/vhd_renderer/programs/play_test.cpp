@@ -1,4 +1,5 @@
 // `vhd_renderer play` as its user runs it.
+#include <cmath>
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -20,6 +21,9 @@ constexpr const char* move_script =
 {"at_ms": 0, "id": 1, "verb": "navigate", "place": "seat", "gait": "instant"}
 {"at_ms": 0, "id": 2, "verb": "grasp", "piece": "light_1", "path_b": [[-0.02, -0.02, 0]], "hand": "right", "after": [1]}
 )";
+
+constexpr double piece_radius_m = 0.016;
+constexpr double piece_height_m = 0.008;
 
 void write(const std::string& file, const std::string& text) {
   std::ofstream(file) << text;
@@ -79,7 +83,26 @@ TEST(Play, TracesJointsAndPiecesAndAnswersEveryCommand) {
   EXPECT_NE(played.out.find(R"("state":"finished")"), std::string::npos);
   std::ifstream trace(folder.path("t.jsonl"));
   nlohmann::json last;
-  for (std::string line; std::getline(trace, line);) last = nlohmann::json::parse(line);
+  // While the piece is in the air, the skin of each finger that carries it lies on its rim, and in nobody's piece.
+  int carried = 0;
+  for (std::string line; std::getline(trace, line);) {
+    last = nlohmann::json::parse(line);
+    const auto& piece = last["pieces"][0];
+    if (piece["z"] < 0.01) continue;
+    ++carried;
+    for (const char* finger : {"r_thumb", "r_index", "r_middle"}) {
+      double nearest_m = 1;
+      for (const auto& p : last["fingertips"][finger]) {
+        const double out =
+            std::hypot(p[0].get<double>() - piece["x"].get<double>(), p[1].get<double>() - piece["y"].get<double>()) -
+            piece_radius_m;
+        const double over = p[2].get<double>() - piece["z"].get<double>();
+        if (over > 0 && over < piece_height_m) nearest_m = std::min(nearest_m, out);
+      }
+      EXPECT_NEAR(nearest_m, 0, 0.001) << finger << " at " << last["t"];
+    }
+  }
+  EXPECT_GT(carried, 5);
   ASSERT_EQ(last["pieces"].size(), 1U);
   EXPECT_NEAR(last["pieces"][0]["x"].get<double>(), -0.02, 1e-4);
   EXPECT_NEAR(last["pieces"][0]["y"].get<double>(), -0.02, 1e-4);
