@@ -192,10 +192,13 @@ void Hub::drop(ConnectionId id, const Error& why, std::int64_t now_ns, bool said
   found->second.closing_since_ns = now_ns;
 }
 
-void Hub::closed(ConnectionId id, const Error& why, std::int64_t now_ns) {
+void Hub::closed(ConnectionId id, Error why, std::int64_t now_ns) {
   const auto found = connections_.find(id);
   if (found == connections_.end()) return;
   ++changes_;
+  if (found->second.stage == Stage::waiting_for_welcome && why.code == ErrorCode::closed) {
+    why.message += " before it had opened a session; if it asks for TLS, both sides need a --tls-file";
+  }
   detach(id, found->second, why, now_ns);
   connections_.erase(found);
 }
@@ -413,6 +416,11 @@ std::vector<Inbound> Hub::take_inbound() {
 
 bool Hub::inbound_full() const {
   return inbound_.size() >= kMostInbound || inbound_bytes_ >= kMostInboundBytes;
+}
+
+bool Hub::listens(ConnectionId id) const {
+  const auto found = connections_.find(id);
+  return found != connections_.end() && found->second.stage != Stage::closing;
 }
 
 bool Hub::wants_read(ConnectionId id) const {

@@ -58,6 +58,7 @@ class Hub {
   FrameParser& parser(ConnectionId connection);
   void read(ConnectionId connection, std::size_t count, std::int64_t now_ns);
   bool wants_read(ConnectionId connection) const;
+  bool listens(ConnectionId connection) const;  // what comes is still heard, wanted just now or not
 
   // The next message to write on it.
   std::optional<WireMessage> next_to_write(ConnectionId connection, std::int64_t now_ns);
@@ -71,7 +72,7 @@ class Hub {
   // Grows whenever connections or sessions come, go or change: what concerns one connection alone leaves it as it is.
   std::uint64_t changes() const { return changes_; }
   std::uint64_t dropped_pictures() const;  // of all peers, by newer ones
-  void closed(ConnectionId connection, const Error& why, std::int64_t now_ns);
+  void closed(ConnectionId connection, Error why, std::int64_t now_ns);
 
   // Heartbeats, deadlines, clock requests. next_tick: when it should be called at the latest.
   void tick(std::int64_t now_ns);

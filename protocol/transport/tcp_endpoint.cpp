@@ -19,6 +19,7 @@
 #include "protocol/transport/socket_set.hpp"
 #include "protocol/transport/tcp_connect.hpp"
 #include "protocol/transport/tcp_link.hpp"
+#include "protocol/transport/tls.hpp"
 #include "protocol/transport/video_choice.hpp"
 
 namespace counterpart {
@@ -34,11 +35,19 @@ constexpr std::size_t kPicturesReused = 4;
 constexpr std::int64_t kLease = 5'000'000;
 constexpr std::int64_t kLongestPatience = 1'000'000'000'000'000;  // eleven days; more would not fit
 
+// What the options name, read and opened.
+struct Prepared {
+  HostPort address;
+  std::string token;
+  TlsIdentity identity;
+  std::unique_ptr<WireTap> recorder;
+};
+
 // A link is in Asio's event loop only while the endpoint's own thread has to wait for it: a socket that is in the loop
 // wakes that thread with every message, whoever reads it.
 struct Watch {
-  Watch(asio::io_context& io, int connected, ConnectionId id, bool to_this_host)
-      : link(connected, id), local(to_this_host), descriptor(io) {}
+  Watch(asio::io_context& io, int connected, ConnectionId id, std::unique_ptr<TlsStream> tls, bool to_this_host)
+      : link(connected, id, std::move(tls)), local(to_this_host), descriptor(io) {}
   ~Watch() { stop(); }
   Watch(const Watch&) = delete;
   Watch& operator=(const Watch&) = delete;
@@ -59,10 +68,12 @@ struct Watch {
 // Sockets are touched only with the mutex held; handlers run on the endpoint's own thread.
 class TcpEndpoint : public Endpoint {
  public:
-  TcpEndpoint(Hub::End end, const LinkOptions& options, std::string token, std::unique_ptr<WireTap> recorder)
+  TcpEndpoint(Hub::End end, const LinkOptions& options, Prepared prepared)
       : options_(options),
-        recorder_(std::move(recorder)),
-        hub_(end, options, std::move(token), recorder_.get()),
+        end_(end),
+        identity_(std::move(prepared.identity)),
+        recorder_(std::move(prepared.recorder)),
+        hub_(end, options, std::move(prepared.token), recorder_.get()),
         acceptor_(io_),
         timer_(io_),
         lease_timer_(io_),
@@ -232,8 +243,15 @@ class TcpEndpoint : public Endpoint {
     error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
     const bool local = socket.remote_endpoint(ignored).address().is_loopback();
-    links_.push_back(std::make_shared<Watch>(io_, socket.release(ignored), id, local));
+    const int connected = socket.release(ignored);
+    links_.push_back(std::make_shared<Watch>(io_, connected, id, tls_over(connected), local));
     after_change();
+  }
+
+  std::unique_ptr<TlsStream> tls_over(int connected) {
+    if (!identity_) return nullptr;
+    const auto end = end_ == Hub::End::client ? TlsStream::End::client : TlsStream::End::server;
+    return std::make_unique<TlsStream>(*identity_, connected, end);
   }
 
   void dial(Hub::LaneName lane) {
@@ -374,9 +392,10 @@ class TcpEndpoint : public Endpoint {
                  [watched](std::int64_t) { watched->link.unblock(); });
     }
     if (!watched->reading && !leased(now_ns) && hub_.wants_read(link.id())) {
-      wait_until(asio::posix::stream_descriptor::wait_read, watched, watched->reading, [this, watched](std::int64_t then) {
-        if (!leased(then)) watched->link.read(hub_);
-      });
+      wait_until(asio::posix::stream_descriptor::wait_read, watched, watched->reading,
+                 [this, watched](std::int64_t then) {
+                   if (!leased(then)) watched->link.read(hub_);
+                 });
     }
   }
 
@@ -386,14 +405,14 @@ class TcpEndpoint : public Endpoint {
                   Ready ready) {
     waiting = true;
     if (!watched->descriptor.is_open()) watched->descriptor.assign(watched->link.socket());
-    watched->descriptor.async_wait(
-        what, [this, watched, &waiting, ready, round = watched->round](const error_code& error) {
-          const std::lock_guard lock(mutex_);
-          if (error || round != watched->round) return;
-          waiting = false;
-          ready(monotonic_ns());
-          after_change();
-        });
+    watched->descriptor.async_wait(what,
+                                   [this, watched, &waiting, ready, round = watched->round](const error_code& error) {
+                                     const std::lock_guard lock(mutex_);
+                                     if (error || round != watched->round) return;
+                                     waiting = false;
+                                     ready(monotonic_ns());
+                                     after_change();
+                                   });
   }
 
   // Broken, or it has said all.
@@ -406,11 +425,13 @@ class TcpEndpoint : public Endpoint {
     const error_code why = link.broken() ? link.broken() : error_code(asio::error::eof);
     watched->stop();
     link.close();
-    hub_.closed(link.id(), network_error(why, to_text(address_)), now_ns);
+    hub_.closed(link.id(), link.tls_error().value_or(network_error(why, to_text(address_))), now_ns);
     links_.erase(std::find(links_.begin(), links_.end(), watched));
   }
 
   LinkOptions options_;
+  Hub::End end_;
+  TlsIdentity identity_;  // null: no TLS
   std::unique_ptr<WireTap> recorder_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
@@ -434,20 +455,20 @@ class TcpEndpoint : public Endpoint {
   std::thread thread_;
 };
 
-struct Prepared {
-  HostPort address;
-  std::string token;
-  std::unique_ptr<WireTap> recorder;
-};
-
 Result<Prepared> prepare(const std::string& address, const LinkOptions& options) {
   auto host_port = parse_address(address);
   if (!host_port) return tl::make_unexpected(host_port.error());
-  Prepared prepared{*host_port, "", nullptr};
+  Prepared prepared;
+  prepared.address = *host_port;
   if (!options.token_file.empty()) {
     auto token = read_token(options.token_file);
     if (!token) return tl::make_unexpected(token.error());
     prepared.token = *token;
+  }
+  if (!options.tls_file.empty()) {
+    auto identity = read_tls_identity(options.tls_file);
+    if (!identity) return tl::make_unexpected(identity.error());
+    prepared.identity = std::move(*identity);
   }
   if (!options.record_file.empty()) {
     auto recorder = Recorder::open(options.record_file, options.role, options.software);
@@ -462,10 +483,10 @@ Result<Prepared> prepare(const std::string& address, const LinkOptions& options)
 Result<std::unique_ptr<Endpoint>> listen_tcp(const std::string& address, const LinkOptions& options) {
   auto prepared = prepare(address, options);
   if (!prepared) return tl::make_unexpected(prepared.error());
+  const HostPort where = prepared->address;
   const bool has_token = !prepared->token.empty();
-  auto endpoint = std::make_unique<TcpEndpoint>(Hub::End::server, options, std::move(prepared->token),
-                                                std::move(prepared->recorder));
-  if (auto listening = endpoint->listen(prepared->address, has_token); !listening) {
+  auto endpoint = std::make_unique<TcpEndpoint>(Hub::End::server, options, std::move(*prepared));
+  if (auto listening = endpoint->listen(where, has_token); !listening) {
     return tl::make_unexpected(listening.error());
   }
   endpoint->start();
@@ -476,9 +497,9 @@ Result<std::unique_ptr<Endpoint>> connect_tcp(const std::string& address, const 
                                               std::int64_t wait_ns) {
   auto prepared = prepare(address, options);
   if (!prepared) return tl::make_unexpected(prepared.error());
-  auto endpoint = std::make_unique<TcpEndpoint>(Hub::End::client, options, std::move(prepared->token),
-                                                std::move(prepared->recorder));
-  endpoint->connect(prepared->address);
+  const HostPort where = prepared->address;
+  auto endpoint = std::make_unique<TcpEndpoint>(Hub::End::client, options, std::move(*prepared));
+  endpoint->connect(where);
   endpoint->start();
   if (wait_ns > 0) {
     if (auto error = endpoint->wait_for_session(wait_ns)) return tl::make_unexpected(*error);

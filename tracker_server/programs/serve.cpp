@@ -92,6 +92,7 @@ void add_serve(CLI::App& app, int& exit_code) {
       ->required();
   command->add_option("--listen", serve.listen, "HOST:PORT for renderers and tools")->capture_default_str();
   command->add_option("--token-file", serve.link.token_file, "needed to listen on anything but loopback");
+  command->add_option("--tls-file", serve.link.tls_file, "TLS 1.3, with this file of vhp certificate");
   command->add_option("--board", arguments->board_file, "JSON with the board's sizes");
   command->add_option("--squares", serve.observe.board.squares, "a side")
       ->check(CLI::IsMember({8, 10}))
@@ -130,7 +131,9 @@ void add_serve(CLI::App& app, int& exit_code) {
   command->add_option("--poses", serve.poses_file, "write every pose here, CSV");
   command->add_option("--report", serve.report_file, "write counts and times here at the end, JSON");
   command->add_option("--record", serve.link.record_file, "capture everything on the link, MCAP");
-  command->add_option("--video", arguments->video, "raw, jpeg, or auto: raw on loopback, between hosts by what the link carries")
+  command
+      ->add_option("--video", arguments->video,
+                   "raw, jpeg, or auto: raw on loopback, between hosts by what the link carries")
       ->check(CLI::IsMember({"auto", "raw", "jpeg"}))
       ->capture_default_str();
   command->callback([arguments, &exit_code] {

@@ -40,6 +40,7 @@ void add_serve(CLI::App& app, int& exit_code) {
   command->add_flag("--lockstep", renderer.lockstep, "composite every frame, in order");
   command->add_option("--token-file", renderer.link.token_file,
                       "shared with the tracker, for other addresses than loopback");
+  command->add_option("--tls-file", renderer.link.tls_file, "TLS 1.3, with this file of vhp certificate");
   command->add_option("--patience", arguments->patience_s, "seconds to wait for a tracker at the start; 0: for ever")
       ->capture_default_str();
   command->add_option("--record", renderer.link.record_file, "capture everything on the link, MCAP");
