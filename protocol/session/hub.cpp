@@ -24,7 +24,7 @@ constexpr std::size_t kMostConnections = 64;
 constexpr std::size_t kMostAway = 64;
 constexpr std::size_t kMostUrgent = 256;
 constexpr std::size_t kMostInbound = 16384;
-constexpr std::size_t kLikelyInbound = 512;
+constexpr std::size_t kLikelyInbound = 256;
 constexpr std::size_t kMostInboundBytes = 64U << 20;
 
 }  // namespace
