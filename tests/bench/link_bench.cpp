@@ -15,6 +15,7 @@
 #include <boost/asio.hpp>
 #include <unistd.h>
 
+#include "protocol/daemon/picture_memory.hpp"
 #include "protocol/transport/address.hpp"
 #include "protocol/transport/certificates.hpp"
 #include "protocol/transport/endpoint.hpp"
@@ -236,6 +237,7 @@ double median_ratio(const std::vector<double>& ours, const std::vector<double>& 
 int main(int argc, char** argv) {
   const int rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 5;
   const std::string only = argc > 2 ? argv[2] : "";
+  keep_picture_memory();  // as the daemons do; plain Asio reads into memory of its own, made once
   const std::string certificates = (std::filesystem::temp_directory_path() / "link_bench_tls").string();
   std::filesystem::remove_all(certificates);
   if (!make_certificates(certificates, {"tracker", "renderer"}, std::chrono::days(1))) return 1;

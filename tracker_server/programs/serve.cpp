@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
+#include "protocol/daemon/picture_memory.hpp"
 #include "protocol/daemon/stop_signal.hpp"
 #include "tracker_server/programs/corners.hpp"
 #include "tracker_server/programs/programs.hpp"
@@ -143,6 +144,7 @@ void add_serve(CLI::App& app, int& exit_code) {
       return;
     }
     catch_stop_signals();
+    keep_picture_memory();
     if (auto served = counterpart::serve(arguments->serve); !served) {
       spdlog::error("{}", served.error().message);
       exit_code = 1;

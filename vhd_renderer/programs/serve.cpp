@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
+#include "protocol/daemon/picture_memory.hpp"
 #include "protocol/daemon/stop_signal.hpp"
 #include "vhd_renderer/pipeline/serve.hpp"
 
@@ -53,6 +54,7 @@ void add_serve(CLI::App& app, int& exit_code) {
     options.link.software = "vhd_renderer " COUNTERPART_VERSION;
     options.link.lockstep = options.lockstep;
     catch_stop_signals();
+    keep_picture_memory();
     if (auto served = counterpart::serve(options); !served) {
       spdlog::error("{}", served.error().message);
       exit_code = 1;
