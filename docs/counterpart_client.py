@@ -20,6 +20,7 @@ import json
 import os
 import selectors
 import socket
+import ssl
 import struct
 import sys
 import time
@@ -108,10 +109,17 @@ def unpack_body(name, body):
 class Lane:
     """One connection of a session."""
 
-    def __init__(self, address, hello, token=None):
+    def __init__(self, address, hello, token=None, tls_file=None):
         host, port = address.rsplit(":", 1)
         self.socket = socket.create_connection((host.strip("[]"), int(port)), timeout=3)
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        if tls_file:
+            tls = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+            tls.minimum_version = ssl.TLSVersion.TLSv1_3
+            tls.check_hostname = False  # the authority signs for this installation alone
+            tls.load_cert_chain(tls_file)
+            tls.load_verify_locations(tls_file)
+            self.socket = tls.wrap_socket(self.socket)
         self.buffer = bytearray()
         self.session = 0
         self.received = hello["last_seq"]  # the last kept message that came
@@ -156,7 +164,7 @@ class Lane:
         while data:
             try:
                 data = data[self.socket.send(data):]
-            except BlockingIOError:
+            except (BlockingIOError, ssl.SSLWantWriteError):
                 time.sleep(0.001)
 
     def _wait_one(self):
@@ -185,14 +193,17 @@ class Lane:
         return TYPES.get(number), message[HEADER.size:], seq if flags & 1 else 0
 
     def read(self):
-        try:
-            data = self.socket.recv(262144)
-        except BlockingIOError:
-            return
-        if not data:
-            raise ProtocolError("the peer closed the connection")
-        self.last_heard = time.monotonic()
-        self.buffer += data
+        while True:
+            try:
+                data = self.socket.recv(262144)
+            except (BlockingIOError, ssl.SSLWantReadError):
+                return
+            if not data:
+                raise ProtocolError("the peer closed the connection")
+            self.last_heard = time.monotonic()
+            self.buffer += data
+            if not isinstance(self.socket, ssl.SSLSocket) or not self.socket.pending():
+                return
 
     def tick(self):
         if time.monotonic() >= self.next_beat:
@@ -205,8 +216,9 @@ class Lane:
 class Client:
     """A session. A lost link is taken up again: kept messages of both sides arrive once and in order."""
 
-    def __init__(self, address, role="observer", want_video=False, token=None):
-        self.address, self.role, self.want_video, self.token = address, role, want_video, token
+    def __init__(self, address, role="observer", want_video=False, token=None, tls_file=None):
+        self.address, self.role, self.want_video = address, role, want_video
+        self.token, self.tls_file = token, tls_file
         self.session, self.seq, self.waiting = 0, 0, []  # waiting: kept messages that are not acknowledged
         self.received = {"main": 0, "video": 0}
         self.main = self.video = None
@@ -224,7 +236,7 @@ class Client:
                 "want_video": self.want_video, "lockstep": False}
 
     def _connect(self):
-        self.main = Lane(self.address, self._hello("main"), self.token)
+        self.main = Lane(self.address, self._hello("main"), self.token, self.tls_file)
         if self.main.welcome.get("resumed"):
             self._acknowledged(self.main.welcome["last_seq"])
             for seq, name, body in self.waiting:
@@ -234,7 +246,7 @@ class Client:
             self.received = {"main": 0, "video": 0}
             self.main.received = 0
         if self.want_video:
-            self.video = Lane(self.address, self._hello("video"), self.token)
+            self.video = Lane(self.address, self._hello("video"), self.token, self.tls_file)
 
     def _reconnect(self):
         wait = 0.05
@@ -323,11 +335,12 @@ def main():
     parser.add_argument("--send", metavar="JSON", help="a command; its final feedback ends the program")
     parser.add_argument("--video", action="store_true", help="pictures, too (sizes only)")
     parser.add_argument("--token-file")
+    parser.add_argument("--tls-file")
     arguments = parser.parse_args()
     token = open(arguments.token_file, "rb").readline().strip() if arguments.token_file else None
     role = "director" if arguments.send else "observer"
     try:
-        with Client(arguments.address, role, arguments.video, token) as client:
+        with Client(arguments.address, role, arguments.video, token, arguments.tls_file) as client:
             command = json.loads(arguments.send) if arguments.send else None
             if command:
                 client.send("command", command)

@@ -39,6 +39,7 @@ ConnectionId Hub::add_connection(std::int64_t now_ns) {
   Connection& connection = connections_[id];
   connection.opened_ns = now_ns;
   connection.last_read_ns = now_ns;
+  ++changes_;
   return id;
 }
 
@@ -149,6 +150,7 @@ void Hub::say(Connection& connection, const Message& message) {
 
 void Hub::fail(ConnectionId id, Connection& connection, const Error& error, std::int64_t now_ns) {
   if (connection.stage == Stage::closing) return;
+  ++changes_;
   connection.urgent.clear();
   say(connection, ErrorReport{static_cast<std::uint16_t>(error.code), error.message.substr(0, 1000)});
   detach(id, connection, error, now_ns);
@@ -183,15 +185,20 @@ void Hub::detach(ConnectionId id, Connection& connection, const Error& why, std:
 void Hub::drop(ConnectionId id, const Error& why, std::int64_t now_ns, bool said_goodbye) {
   const auto found = connections_.find(id);
   if (found == connections_.end()) return;
+  ++changes_;
   detach(id, found->second, why, now_ns, said_goodbye);
   found->second.stage = Stage::closing;
   found->second.urgent.clear();
   found->second.closing_since_ns = now_ns;
 }
 
-void Hub::closed(ConnectionId id, const Error& why, std::int64_t now_ns) {
+void Hub::closed(ConnectionId id, Error why, std::int64_t now_ns) {
   const auto found = connections_.find(id);
   if (found == connections_.end()) return;
+  ++changes_;
+  if (found->second.stage == Stage::waiting_for_welcome && why.code == ErrorCode::closed) {
+    why.message += " before it had opened a session; if it asks for TLS, both sides need a --tls-file";
+  }
   detach(id, found->second, why, now_ns);
   connections_.erase(found);
 }
@@ -206,6 +213,7 @@ void Hub::forget_peer(PeerId id) {
 
 // The session is over and will not be resumed.
 void Hub::end_session(Peer& peer, const Error& why, std::int64_t now_ns) {
+  ++changes_;
   const PeerId id = peer.id;
   const ConnectionId main = peer.main_connection;
   const ConnectionId video = peer.video_connection;
@@ -329,33 +337,43 @@ void Hub::forget_the_long_gone(std::int64_t now_ns) {
   }
 }
 
-std::int64_t Hub::next_tick(std::int64_t now_ns) const {
+std::int64_t Hub::next_tick(const Connection& connection, std::int64_t now_ns) const {
   std::int64_t next = now_ns + kSecond;
   const auto sooner = [&](std::int64_t when_ns) { next = std::min(next, std::max(when_ns, now_ns)); };
-  for (const auto& [id, connection] : connections_) {
-    if (connection.paused_until_ns >= 0) sooner(connection.paused_until_ns);
-    if (connection.stage == Stage::closing) {
-      sooner(connection.closing_since_ns + kClosingLimit + 1);
-    } else if (connection.stage != Stage::open) {
-      sooner(connection.opened_ns + handshake_limit(now_ns));
-    } else {
-      sooner(connection.next_heartbeat_ns);
-      sooner(connection.last_read_ns + options_.dead_after_ns);
-      if (connection.lane == LaneName::main) sooner(connection.next_clock_ns);
-      if (connection.acknowledge_by_ns >= 0) sooner(connection.acknowledge_by_ns);
-      if (connection.message_began_ns >= 0) sooner(connection.message_began_ns + kMessageLimit);
-    }
-  }
-  if (end_ == End::client) {
-    if (!main_dial_.busy) sooner(main_dial_.next_ns);
-    const auto peer = peers_.find(server_peer_);
-    const bool open = peer != peers_.end() && peer->second.main_connection != 0;
-    if (open && options_.want_video && !video_dial_.busy) sooner(video_dial_.next_ns);
+  if (connection.paused_until_ns >= 0) sooner(connection.paused_until_ns);
+  if (connection.stage == Stage::closing) {
+    sooner(connection.closing_since_ns + kClosingLimit + 1);
+  } else if (connection.stage != Stage::open) {
+    sooner(connection.opened_ns + handshake_limit(now_ns));
+  } else {
+    sooner(connection.next_heartbeat_ns);
+    sooner(connection.last_read_ns + options_.dead_after_ns);
+    if (connection.lane == LaneName::main) sooner(connection.next_clock_ns);
+    if (connection.acknowledge_by_ns >= 0) sooner(connection.acknowledge_by_ns);
+    if (connection.message_began_ns >= 0) sooner(connection.message_began_ns + kMessageLimit);
   }
   return next;
 }
 
+std::int64_t Hub::next_tick(ConnectionId id, std::int64_t now_ns) const {
+  const auto found = connections_.find(id);
+  return found == connections_.end() ? now_ns + kSecond : next_tick(found->second, now_ns);
+}
+
+std::int64_t Hub::next_tick(std::int64_t now_ns) const {
+  std::int64_t next = now_ns + kSecond;
+  for (const auto& [id, connection] : connections_) next = std::min(next, next_tick(connection, now_ns));
+  if (end_ != End::client) return next;
+  const auto sooner = [&](std::int64_t when_ns) { next = std::min(next, std::max(when_ns, now_ns)); };
+  if (!main_dial_.busy) sooner(main_dial_.next_ns);
+  const auto peer = peers_.find(server_peer_);
+  const bool open = peer != peers_.end() && peer->second.main_connection != 0;
+  if (open && options_.want_video && !video_dial_.busy) sooner(video_dial_.next_ns);
+  return next;
+}
+
 void Hub::leave(std::int64_t now_ns) {
+  ++changes_;
   for (auto& [id, connection] : connections_) {
     if (connection.stage == Stage::open) say(connection, Bye{options_.software + " has ended"});
     connection.stage = Stage::closing;
@@ -400,6 +418,11 @@ bool Hub::inbound_full() const {
   return inbound_.size() >= kMostInbound || inbound_bytes_ >= kMostInboundBytes;
 }
 
+bool Hub::listens(ConnectionId id) const {
+  const auto found = connections_.find(id);
+  return found != connections_.end() && found->second.stage != Stage::closing;
+}
+
 bool Hub::wants_read(ConnectionId id) const {
   const auto found = connections_.find(id);
   return found != connections_.end() && found->second.stage != Stage::closing && found->second.paused_until_ns < 0 &&
@@ -409,6 +432,12 @@ bool Hub::wants_read(ConnectionId id) const {
 bool Hub::carries_video(ConnectionId id) const {
   const auto found = connections_.find(id);
   return found != connections_.end() && found->second.stage == Stage::open && found->second.lane == LaneName::video;
+}
+
+ConnectionId Hub::carrier(PeerId id, MessageType type) const {
+  const auto found = peers_.find(id);
+  if (found == peers_.end()) return 0;
+  return type == MessageType::video ? found->second.video_connection : found->second.main_connection;
 }
 
 std::uint64_t Hub::dropped_pictures() const {

@@ -58,6 +58,7 @@ class Hub {
   FrameParser& parser(ConnectionId connection);
   void read(ConnectionId connection, std::size_t count, std::int64_t now_ns);
   bool wants_read(ConnectionId connection) const;
+  bool listens(ConnectionId connection) const;  // what comes is still heard, wanted just now or not
 
   // The next message to write on it.
   std::optional<WireMessage> next_to_write(ConnectionId connection, std::int64_t now_ns);
@@ -67,12 +68,16 @@ class Hub {
   bool overdue(ConnectionId connection, std::int64_t now_ns) const;
   bool exists(ConnectionId connection) const { return connections_.count(connection) > 0; }
   bool carries_video(ConnectionId connection) const;
+  ConnectionId carrier(PeerId peer, MessageType type) const;  // on which messages of this type go to it; 0: none now
+  // Grows whenever connections or sessions come, go or change: what concerns one connection alone leaves it as it is.
+  std::uint64_t changes() const { return changes_; }
   std::uint64_t dropped_pictures() const;  // of all peers, by newer ones
-  void closed(ConnectionId connection, const Error& why, std::int64_t now_ns);
+  void closed(ConnectionId connection, Error why, std::int64_t now_ns);
 
   // Heartbeats, deadlines, clock requests. next_tick: when it should be called at the latest.
   void tick(std::int64_t now_ns);
   std::int64_t next_tick(std::int64_t now_ns) const;
+  std::int64_t next_tick(ConnectionId connection, std::int64_t now_ns) const;  // for this connection's sake
 
   std::vector<ConnectionId> connections() const;
 
@@ -157,6 +162,7 @@ class Hub {
   void begin_dial(Dial& dial, std::int64_t now_ns);
   std::optional<std::int64_t> quick_limit(std::int64_t now_ns) const;
   std::int64_t handshake_limit(std::int64_t now_ns) const;
+  std::int64_t next_tick(const Connection& connection, std::int64_t now_ns) const;
   void forget_the_long_gone(std::int64_t now_ns);
   void try_again_later(Dial& dial, std::int64_t now_ns);
   void note_refusal(const Error& why);
@@ -195,6 +201,7 @@ class Hub {
   std::map<std::uint64_t, PeerId> sessions_;
   std::vector<Inbound> inbound_;
   std::size_t inbound_bytes_ = 0;
+  std::uint64_t changes_ = 0;
   ConnectionId last_connection_ = 0;
   PeerId last_peer_ = 0;
   PeerId server_peer_ = 0;  // client: the peer of the current session

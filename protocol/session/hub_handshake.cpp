@@ -169,6 +169,7 @@ void Hub::attach(ConnectionId id, Connection& connection, Peer& peer, bool resum
   ConnectionId& slot = connection.lane == LaneName::main ? peer.main_connection : peer.video_connection;
   const ConnectionId before = slot;
   slot = id;
+  ++changes_;
   connection.peer = peer.id;
   connection.stage = Stage::open;
   connection.next_heartbeat_ns = now_ns + options_.heartbeat_ns;

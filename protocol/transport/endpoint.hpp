@@ -79,6 +79,7 @@ struct LinkOptions {
   std::string software;  // "vhd_renderer 0.1.0"
   bool lockstep = false;
   std::string token_file;  // needed for a listening address other than loopback
+  std::string tls_file;  // TLS 1.3 with this identity (transport/tls.hpp), and with nobody who has none; empty: no TLS
   // Raw pictures are turned into this before they are sent. Empty: raw on loopback, between hosts what the links carry
   // (transport/video_choice.hpp).
   std::optional<PixelCodec> video_codec;

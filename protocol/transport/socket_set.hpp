@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include <sys/epoll.h>
@@ -27,17 +28,23 @@ class SocketSet {
   // it.
   void want(int socket, std::uint32_t id, bool read, bool write, std::uint32_t& wanted) const;
 
-  // What is ready; empty: the time is over, or the bell rang.
-  std::span<const Ready> wait(std::int64_t timeout_ns);
+  // What is ready; empty: it is past the deadline, or the bell rang, or an earlier wait's deadline has come.
+  std::span<const Ready> wait(std::int64_t now_ns, std::int64_t deadline_ns);
 
   // From any thread.
   void ring() const;
 
  private:
   static constexpr std::uint32_t kBell = 0;  // no connection has this id
+  static constexpr std::uint32_t kAlarm = std::numeric_limits<std::uint32_t>::max();  // nor this one
+
+  void watch(int descriptor, std::uint32_t id, std::uint32_t events) const;
+  void set_alarm(std::int64_t when_ns);
 
   int epoll_;
   int bell_;
+  int alarm_;
+  std::int64_t alarm_ns_ = 0;  // when it goes off
   std::array<epoll_event, 16> events_{};
   std::array<Ready, 16> ready_{};
 };

@@ -1,7 +1,7 @@
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <limits>
-#include <map>
 #include <mutex>
 #include <thread>
 
@@ -19,6 +19,7 @@
 #include "protocol/transport/socket_set.hpp"
 #include "protocol/transport/tcp_connect.hpp"
 #include "protocol/transport/tcp_link.hpp"
+#include "protocol/transport/tls.hpp"
 #include "protocol/transport/video_choice.hpp"
 
 namespace counterpart {
@@ -29,16 +30,24 @@ using asio::ip::tcp;
 using boost::system::error_code;
 
 constexpr auto kGoodbyeLimit = std::chrono::milliseconds(300);
-constexpr std::size_t kPosesReused = 4096;  // whose memory is used again
+constexpr std::size_t kPosesReused = 1024;  // whose memory is used again
 constexpr std::size_t kPicturesReused = 4;
-constexpr std::int64_t kLease = 2'000'000;
+constexpr std::int64_t kLease = 5'000'000;
 constexpr std::int64_t kLongestPatience = 1'000'000'000'000'000;  // eleven days; more would not fit
+
+// What the options name, read and opened.
+struct Prepared {
+  HostPort address;
+  std::string token;
+  TlsIdentity identity;
+  std::unique_ptr<WireTap> recorder;
+};
 
 // A link is in Asio's event loop only while the endpoint's own thread has to wait for it: a socket that is in the loop
 // wakes that thread with every message, whoever reads it.
 struct Watch {
-  Watch(asio::io_context& io, int connected, ConnectionId id, bool to_this_host)
-      : link(connected, id), local(to_this_host), descriptor(io) {}
+  Watch(asio::io_context& io, int connected, ConnectionId id, std::unique_ptr<TlsStream> tls, bool to_this_host)
+      : link(connected, id, std::move(tls)), local(to_this_host), descriptor(io) {}
   ~Watch() { stop(); }
   Watch(const Watch&) = delete;
   Watch& operator=(const Watch&) = delete;
@@ -59,10 +68,12 @@ struct Watch {
 // Sockets are touched only with the mutex held; handlers run on the endpoint's own thread.
 class TcpEndpoint : public Endpoint {
  public:
-  TcpEndpoint(Hub::End end, const LinkOptions& options, std::string token, std::unique_ptr<WireTap> recorder)
+  TcpEndpoint(Hub::End end, const LinkOptions& options, Prepared prepared)
       : options_(options),
-        recorder_(std::move(recorder)),
-        hub_(end, options, std::move(token), recorder_.get()),
+        end_(end),
+        identity_(std::move(prepared.identity)),
+        recorder_(std::move(prepared.recorder)),
+        hub_(end, options, std::move(prepared.token), recorder_.get()),
         acceptor_(io_),
         timer_(io_),
         lease_timer_(io_),
@@ -80,7 +91,7 @@ class TcpEndpoint : public Endpoint {
     }
     io_.stop();
     if (thread_.joinable()) thread_.join();
-    for (const auto& [id, watched] : links_) watched->stop();
+    for (const auto& watched : links_) watched->stop();
   }
 
   TcpEndpoint(const TcpEndpoint&) = delete;
@@ -129,7 +140,9 @@ class TcpEndpoint : public Endpoint {
     if (!outgoing) return refuse(peer, outgoing.error());
     const std::int64_t now_ns = monotonic_ns();
     hub_.send(peer, *outgoing, now_ns);
-    after_send(now_ns);
+    const auto carrier = find(hub_.carrier(peer, outgoing->type));
+    if (carrier != nullptr && is_over_after_writing(carrier, now_ns)) return after_change();
+    if (changed()) after_change();
   }
 
   void broadcast(const Message& message) override {
@@ -138,21 +151,18 @@ class TcpEndpoint : public Endpoint {
     if (!outgoing) return refuse(0, outgoing.error());
     const std::int64_t now_ns = monotonic_ns();
     hub_.broadcast(*outgoing, now_ns);
-    after_send(now_ns);
+    after_change();
   }
 
   // A program that waits here reads the sockets itself: a message then costs one wake-up less.
   std::vector<Inbound> receive(std::int64_t timeout_ns) override {
     std::unique_lock lock(mutex_);
-    const std::int64_t deadline = monotonic_ns() + std::min(timeout_ns, kLongestPatience);
-    while (!hub_.has_inbound()) {
-      const std::int64_t left = deadline - monotonic_ns();
-      if (left <= 0) break;
-      read_in_place(lock, left);
-    }
-    if (timeout_ns > 0) take_lease();
+    std::int64_t now_ns = monotonic_ns();
+    const std::int64_t deadline_ns = now_ns + std::min(timeout_ns, kLongestPatience);
+    while (!hub_.has_inbound() && now_ns < deadline_ns) now_ns = read_in_place(lock, now_ns, deadline_ns);
+    if (timeout_ns > 0) take_lease(now_ns);
     auto taken = hub_.take_inbound();
-    if (!leased()) wait_for_all();  // it may have been too full to read on
+    if (!leased(now_ns)) wait_for_all();  // it may have been too full to read on
     return taken;
   }
 
@@ -191,8 +201,8 @@ class TcpEndpoint : public Endpoint {
     VideoLinks all;
     all.dropped = hub_.dropped_pictures();
     all.slowest_bytes_per_second = std::numeric_limits<double>::max();
-    for (const auto& [id, watched] : links_) {
-      if (!hub_.carries_video(id)) continue;
+    for (const auto& watched : links_) {
+      if (!hub_.carries_video(watched->link.id())) continue;
       all.all_local = all.all_local && watched->local;
       all.slowest_bytes_per_second = std::min(all.slowest_bytes_per_second, delivery_rate(watched->link.socket()));
     }
@@ -233,9 +243,15 @@ class TcpEndpoint : public Endpoint {
     error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
     const bool local = socket.remote_endpoint(ignored).address().is_loopback();
-    links_[id] = std::make_shared<Watch>(io_, socket.release(ignored), id, local);
-    ++link_changes_;
+    const int connected = socket.release(ignored);
+    links_.push_back(std::make_shared<Watch>(io_, connected, id, tls_over(connected), local));
     after_change();
+  }
+
+  std::unique_ptr<TlsStream> tls_over(int connected) {
+    if (!identity_) return nullptr;
+    const auto end = end_ == Hub::End::client ? TlsStream::End::client : TlsStream::End::server;
+    return std::make_unique<TlsStream>(*identity_, connected, end);
   }
 
   void dial(Hub::LaneName lane) {
@@ -252,15 +268,20 @@ class TcpEndpoint : public Endpoint {
                    });
   }
 
-  void after_send(std::int64_t now_ns) {
-    bool over = hub_.has_inbound();
-    for (const auto& [id, watched] : links_) {
-      TcpLink& link = watched->link;
-      link.flush(hub_, now_ns);
-      if (link.blocked()) watch(watched);
-      over = over || link.broken() || hub_.finished(id);
-    }
-    if (over) after_change();
+  // Ids grow, so the links lie in their order. Null: it is gone.
+  std::shared_ptr<Watch> find(ConnectionId id) const {
+    const auto found = std::lower_bound(links_.begin(), links_.end(), id,
+                                        [](const auto& watched, ConnectionId one) { return watched->link.id() < one; });
+    return found != links_.end() && (*found)->link.id() == id ? *found : nullptr;
+  }
+
+  // Connections or sessions came, went or changed since after_change.
+  bool changed() const { return hub_.changes() != changes_seen_; }
+
+  bool is_over_after_writing(const std::shared_ptr<Watch>& watched, std::int64_t now_ns) {
+    watched->link.flush(hub_, now_ns);
+    if (watched->link.blocked()) watch(watched, now_ns);
+    return is_over(watched->link, now_ns);
   }
 
   // --- reading on the program's own thread ---
@@ -268,32 +289,38 @@ class TcpEndpoint : public Endpoint {
   // While it lasts, and a moment longer, the endpoint's thread leaves reading alone; a program that does not come back
   // loses nothing but that moment.
 
-  bool leased() const { return !leaving_ && (polling_ || monotonic_ns() < lease_ns_); }
+  bool leased(std::int64_t now_ns) const { return !leaving_ && (polling_ || now_ns < lease_ns_); }
 
-  void read_in_place(std::unique_lock<std::mutex>& lock, std::int64_t timeout_ns) {
-    for (const auto& [id, watched] : links_) {
+  // Returns what time it is then.
+  std::int64_t read_in_place(std::unique_lock<std::mutex>& lock, std::int64_t now_ns, std::int64_t deadline_ns) {
+    for (const auto& watched : links_) {
       TcpLink& link = watched->link;
       watched->stop();
-      sockets_.want(link.socket(), id, !link.broken() && hub_.wants_read(id), link.blocked(), link.waited_for);
+      const bool reads = !link.broken() && hub_.wants_read(link.id());
+      sockets_.want(link.socket(), link.id(), reads, link.blocked(), link.waited_for);
     }
     polling_ = true;
     lock.unlock();
-    const auto ready = sockets_.wait(timeout_ns);
+    const auto ready = sockets_.wait(now_ns, deadline_ns);
     lock.lock();
     polling_ = false;
-    take_lease();
+    now_ns = monotonic_ns();
+    take_lease(now_ns);
+    bool over = false;
     for (const SocketSet::Ready& one : ready) {
-      const auto found = links_.find(one.id);
-      if (found == links_.end()) continue;
-      TcpLink& link = found->second->link;
-      if (one.write) link.unblock();
-      if (one.read) link.read(hub_);
+      const auto watched = find(one.id);
+      if (watched == nullptr) continue;
+      if (one.write) watched->link.unblock();
+      if (one.read) watched->link.read(hub_);
+      over = is_over_after_writing(watched, now_ns) || over;
+      set_alarm(hub_.next_tick(one.id, now_ns));
     }
-    if (!ready.empty()) after_change();
+    if (over || changed()) after_change();
+    return now_ns;
   }
 
-  void take_lease() {
-    lease_ns_ = monotonic_ns() + kLease;
+  void take_lease(std::int64_t now_ns) {
+    lease_ns_ = now_ns + kLease;
     end_lease_later();
   }
 
@@ -306,7 +333,7 @@ class TcpEndpoint : public Endpoint {
       const std::lock_guard lock(mutex_);
       lease_ending_ = false;
       if (polling_) return;
-      if (leased()) return end_lease_later();
+      if (leased(monotonic_ns())) return end_lease_later();
       wait_for_all();
     });
   }
@@ -317,29 +344,28 @@ class TcpEndpoint : public Endpoint {
     if (!leaving_) {
       while (const auto lane = hub_.wants_to_dial(now_ns)) dial(*lane);
     }
-    std::vector<ConnectionId> over;
-    for (const auto& [id, watched] : links_) {
+    std::vector<std::shared_ptr<Watch>> over;
+    for (const auto& watched : links_) {
       watched->link.flush(hub_, now_ns);
-      watch(watched);
-      if (is_over(watched->link, now_ns)) over.push_back(id);
+      watch(watched, now_ns);
+      if (is_over(watched->link, now_ns)) over.push_back(watched);
     }
-    for (const ConnectionId id : over) reap(id, now_ns);
-    set_alarm(now_ns);
+    for (const auto& watched : over) reap(watched, now_ns);
+    set_alarm(hub_.next_tick(now_ns));
     if (hub_.has_inbound() || links_.empty()) changed_.notify_all();
-    if (polling_ && (hub_.has_inbound() || link_changes_ != link_changes_seen_)) sockets_.ring();
-    link_changes_seen_ = link_changes_;
+    if (polling_ && (hub_.has_inbound() || changed())) sockets_.ring();
+    changes_seen_ = hub_.changes();
   }
 
   void wait_for_all() {
-    for (const auto& [id, watched] : links_) watch(watched);
+    for (const auto& watched : links_) watch(watched, monotonic_ns());
   }
 
-  void set_alarm(std::int64_t now_ns) {
-    const std::int64_t next = hub_.next_tick(now_ns);
-    if (alarm_set_ && alarm_ns_ <= next) return;
+  void set_alarm(std::int64_t when_ns) {
+    if (alarm_set_ && alarm_ns_ <= when_ns) return;
     alarm_set_ = true;
-    alarm_ns_ = next;
-    timer_.expires_at(std::chrono::steady_clock::time_point(std::chrono::nanoseconds(next)));
+    alarm_ns_ = when_ns;
+    timer_.expires_at(std::chrono::steady_clock::time_point(std::chrono::nanoseconds(when_ns)));
     timer_.async_wait([this](const error_code& cancelled) {
       if (cancelled) return;
       const std::lock_guard lock(mutex_);
@@ -353,7 +379,7 @@ class TcpEndpoint : public Endpoint {
   }
 
   // Has the endpoint's thread wait for what this link waits for, unless the program's thread does.
-  void watch(const std::shared_ptr<Watch>& watched) {
+  void watch(const std::shared_ptr<Watch>& watched, std::int64_t now_ns) {
     const TcpLink& link = watched->link;
     if (link.broken()) return;
     if (polling_) {
@@ -361,32 +387,30 @@ class TcpEndpoint : public Endpoint {
       if (link.blocked() || again) sockets_.ring();
       return;
     }
-    if (link.blocked() && !watched->writing) wait_to_write(watched);
-    if (!watched->reading && !leased() && hub_.wants_read(link.id())) wait_to_read(watched);
+    if (link.blocked() && !watched->writing) {
+      wait_until(asio::posix::stream_descriptor::wait_write, watched, watched->writing,
+                 [watched](std::int64_t) { watched->link.unblock(); });
+    }
+    if (!watched->reading && !leased(now_ns) && hub_.wants_read(link.id())) {
+      wait_until(asio::posix::stream_descriptor::wait_read, watched, watched->reading,
+                 [this, watched](std::int64_t then) {
+                   if (!leased(then)) watched->link.read(hub_);
+                 });
+    }
   }
 
-  void wait_to_read(const std::shared_ptr<Watch>& watched) {
-    watched->reading = true;
+  // waiting: the flag of `watched` that says so.
+  template <class Ready>
+  void wait_until(asio::posix::stream_descriptor::wait_type what, const std::shared_ptr<Watch>& watched, bool& waiting,
+                  Ready ready) {
+    waiting = true;
     if (!watched->descriptor.is_open()) watched->descriptor.assign(watched->link.socket());
-    watched->descriptor.async_wait(asio::posix::stream_descriptor::wait_read,
-                                   [this, watched, round = watched->round](const error_code& error) {
+    watched->descriptor.async_wait(what,
+                                   [this, watched, &waiting, ready, round = watched->round](const error_code& error) {
                                      const std::lock_guard lock(mutex_);
                                      if (error || round != watched->round) return;
-                                     watched->reading = false;
-                                     if (!leased()) watched->link.read(hub_);
-                                     after_change();
-                                   });
-  }
-
-  void wait_to_write(const std::shared_ptr<Watch>& watched) {
-    watched->writing = true;
-    if (!watched->descriptor.is_open()) watched->descriptor.assign(watched->link.socket());
-    watched->descriptor.async_wait(asio::posix::stream_descriptor::wait_write,
-                                   [this, watched, round = watched->round](const error_code& error) {
-                                     const std::lock_guard lock(mutex_);
-                                     if (error || round != watched->round) return;
-                                     watched->writing = false;
-                                     watched->link.unblock();
+                                     waiting = false;
+                                     ready(monotonic_ns());
                                      after_change();
                                    });
   }
@@ -396,17 +420,18 @@ class TcpEndpoint : public Endpoint {
     return link.broken() || (hub_.finished(link.id()) && !link.writing()) || hub_.overdue(link.id(), now_ns);
   }
 
-  void reap(ConnectionId id, std::int64_t now_ns) {
-    Watch& watched = *links_.at(id);
-    const error_code why = watched.link.broken() ? watched.link.broken() : error_code(asio::error::eof);
-    watched.stop();
-    watched.link.close();
-    hub_.closed(id, network_error(why, to_text(address_)), now_ns);
-    links_.erase(id);
-    ++link_changes_;
+  void reap(const std::shared_ptr<Watch>& watched, std::int64_t now_ns) {
+    TcpLink& link = watched->link;
+    const error_code why = link.broken() ? link.broken() : error_code(asio::error::eof);
+    watched->stop();
+    link.close();
+    hub_.closed(link.id(), link.tls_error().value_or(network_error(why, to_text(address_))), now_ns);
+    links_.erase(std::find(links_.begin(), links_.end(), watched));
   }
 
   LinkOptions options_;
+  Hub::End end_;
+  TlsIdentity identity_;  // null: no TLS
   std::unique_ptr<WireTap> recorder_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
@@ -419,31 +444,31 @@ class TcpEndpoint : public Endpoint {
   bool polling_ = false;       // the program's thread waits on the sockets
   bool lease_ending_ = false;  // lease_timer_ runs
   std::int64_t lease_ns_ = 0;
-  std::uint64_t link_changes_ = 0, link_changes_seen_ = 0;  // links that came or went
+  std::uint64_t changes_seen_ = 0;  // of hub_.changes()
   bool alarm_set_ = false;
   std::int64_t alarm_ns_ = 0;
   asio::io_context io_;
   tcp::acceptor acceptor_;
   asio::steady_timer timer_, lease_timer_;
   asio::executor_work_guard<asio::io_context::executor_type> work_;
-  std::map<ConnectionId, std::shared_ptr<Watch>> links_;
+  std::vector<std::shared_ptr<Watch>> links_;  // by id
   std::thread thread_;
-};
-
-struct Prepared {
-  HostPort address;
-  std::string token;
-  std::unique_ptr<WireTap> recorder;
 };
 
 Result<Prepared> prepare(const std::string& address, const LinkOptions& options) {
   auto host_port = parse_address(address);
   if (!host_port) return tl::make_unexpected(host_port.error());
-  Prepared prepared{*host_port, "", nullptr};
+  Prepared prepared;
+  prepared.address = *host_port;
   if (!options.token_file.empty()) {
     auto token = read_token(options.token_file);
     if (!token) return tl::make_unexpected(token.error());
     prepared.token = *token;
+  }
+  if (!options.tls_file.empty()) {
+    auto identity = read_tls_identity(options.tls_file);
+    if (!identity) return tl::make_unexpected(identity.error());
+    prepared.identity = std::move(*identity);
   }
   if (!options.record_file.empty()) {
     auto recorder = Recorder::open(options.record_file, options.role, options.software);
@@ -458,10 +483,10 @@ Result<Prepared> prepare(const std::string& address, const LinkOptions& options)
 Result<std::unique_ptr<Endpoint>> listen_tcp(const std::string& address, const LinkOptions& options) {
   auto prepared = prepare(address, options);
   if (!prepared) return tl::make_unexpected(prepared.error());
+  const HostPort where = prepared->address;
   const bool has_token = !prepared->token.empty();
-  auto endpoint = std::make_unique<TcpEndpoint>(Hub::End::server, options, std::move(prepared->token),
-                                                std::move(prepared->recorder));
-  if (auto listening = endpoint->listen(prepared->address, has_token); !listening) {
+  auto endpoint = std::make_unique<TcpEndpoint>(Hub::End::server, options, std::move(*prepared));
+  if (auto listening = endpoint->listen(where, has_token); !listening) {
     return tl::make_unexpected(listening.error());
   }
   endpoint->start();
@@ -472,9 +497,9 @@ Result<std::unique_ptr<Endpoint>> connect_tcp(const std::string& address, const 
                                               std::int64_t wait_ns) {
   auto prepared = prepare(address, options);
   if (!prepared) return tl::make_unexpected(prepared.error());
-  auto endpoint = std::make_unique<TcpEndpoint>(Hub::End::client, options, std::move(prepared->token),
-                                                std::move(prepared->recorder));
-  endpoint->connect(prepared->address);
+  const HostPort where = prepared->address;
+  auto endpoint = std::make_unique<TcpEndpoint>(Hub::End::client, options, std::move(*prepared));
+  endpoint->connect(where);
   endpoint->start();
   if (wait_ns > 0) {
     if (auto error = endpoint->wait_for_session(wait_ns)) return tl::make_unexpected(*error);

@@ -26,15 +26,26 @@ void TcpLink::close() {
   ::close(std::exchange(socket_, -1));
 }
 
+// What TLS has taken from the socket nobody will be woken for, so it is read in any case.
+bool TcpLink::reads_on(const Hub& hub, int rounds) const {
+  if (broken_) return false;
+  if (tls_ && tls_->has_pending()) return hub.listens(id_);
+  return rounds < kMostReadsInARow && hub.wants_read(id_);
+}
+
+ssize_t TcpLink::read_some(std::span<std::uint8_t> room) {
+  return tls_ ? tls_->read(room) : ::recv(socket_, room.data(), room.size(), MSG_DONTWAIT);
+}
+
 void TcpLink::read(Hub& hub) {
-  for (int i = 0; i < kMostReadsInARow && !broken_ && hub.wants_read(id_); ++i) {
+  for (int rounds = 0; reads_on(hub, rounds); ++rounds) {
     const auto room = hub.parser(id_).room();
-    const ssize_t count = ::recv(socket_, room.data(), room.size(), MSG_DONTWAIT);
+    const ssize_t count = read_some(room);
     if (count == 0) broken_ = boost::asio::error::eof;
     if (count < 0 && errno != EAGAIN && errno != EINTR) broken_ = last_system_error();
     if (count <= 0) return;
     hub.read(id_, static_cast<std::size_t>(count), monotonic_ns());
-    if (static_cast<std::size_t>(count) < room.size()) return;  // the socket is empty
+    if (!tls_ && static_cast<std::size_t>(count) < room.size()) return;  // the socket is empty
   }
 }
 
@@ -45,6 +56,7 @@ void TcpLink::flush(Hub& hub, std::int64_t now_ns) {
     if (count >= 0) {
       consume(static_cast<std::size_t>(count));
     } else if (errno == EAGAIN) {
+      if (tls_ && !tls_->waits_to_write()) return;  // reading brings it on
       blocked_ = true;
     } else if (errno != EINTR) {
       broken_ = last_system_error();
@@ -54,6 +66,7 @@ void TcpLink::flush(Hub& hub, std::int64_t now_ns) {
 
 ssize_t TcpLink::write_some() {
   constexpr int kFlags = MSG_DONTWAIT | MSG_NOSIGNAL;
+  if (tls_) return tls_->write({static_cast<const std::uint8_t*>(buffers_[0].iov_base), buffers_[0].iov_len});
   if (buffers_.size() == 1) return ::send(socket_, buffers_[0].iov_base, buffers_[0].iov_len, kFlags);
   msghdr message{};
   message.msg_iov = buffers_.data();

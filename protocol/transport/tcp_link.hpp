@@ -2,7 +2,7 @@
 // the endpoint's lock.
 #pragma once
 
-#include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -11,13 +11,15 @@
 #include <sys/uio.h>
 
 #include "protocol/session/hub.hpp"
+#include "protocol/transport/tls.hpp"
 
 namespace counterpart {
 
 class TcpLink {
  public:
-  // Owns `connected`, a descriptor.
-  TcpLink(int connected, ConnectionId id) : socket_(connected), id_(id) {}
+  // Owns `connected`, a descriptor. tls: what its bytes go through; null: nothing.
+  TcpLink(int connected, ConnectionId id, std::unique_ptr<TlsStream> tls)
+      : socket_(connected), id_(id), tls_(std::move(tls)) {}
   ~TcpLink() { close(); }
   TcpLink(const TcpLink&) = delete;
   TcpLink& operator=(const TcpLink&) = delete;
@@ -29,6 +31,7 @@ class TcpLink {
   void unblock() { blocked_ = false; }
   bool writing() const { return !buffers_.empty(); }
   const boost::system::error_code& broken() const { return broken_; }
+  std::optional<Error> tls_error() const { return tls_ ? tls_->error() : std::nullopt; }
 
   // Gives the hub what has come, until nothing more is there or it wants no more.
   void read(Hub& hub);
@@ -41,6 +44,8 @@ class TcpLink {
   std::uint32_t waited_for = 0;  // its registration in the endpoint's SocketSet
 
  private:
+  bool reads_on(const Hub& hub, int rounds) const;
+  ssize_t read_some(std::span<std::uint8_t> room);
   bool gather(Hub& hub, std::int64_t now_ns);
   void stage(ByteView bytes);
   ssize_t write_some();
@@ -48,6 +53,7 @@ class TcpLink {
 
   int socket_;
   ConnectionId id_;
+  std::unique_ptr<TlsStream> tls_;
   bool blocked_ = false;
   boost::system::error_code broken_;
   // The write in progress: headers and small bodies behind each other in `staging_`, large bodies where they are.

@@ -14,6 +14,7 @@ void add_replay(CLI::App& app, int& exit_code);
 void add_script(CLI::App& app, int& exit_code);
 void add_capture(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
+void add_certificate(CLI::App& app, int& exit_code);
 void add_completion(CLI::App& app, int& exit_code);
 
 }  // namespace counterpart::vhp

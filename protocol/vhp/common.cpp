@@ -2,11 +2,18 @@
 
 #include <iostream>
 
+#include <CLI/CLI.hpp>
+
 namespace counterpart::vhp {
 
 int fail(const Error& error) {
   std::cerr << "vhp: " << error.message << '\n';
   return error.code == ErrorCode::invalid_argument ? kWrongUsage : kFailed;
+}
+
+void add_security(CLI::App& command, LinkArguments& arguments) {
+  command.add_option("--token-file", arguments.token_file, "The shared token, for other hosts");
+  command.add_option("--tls-file", arguments.tls_file, "TLS 1.3, with this file of vhp certificate");
 }
 
 Result<std::unique_ptr<Endpoint>> open_link(const LinkArguments& arguments, Role role, bool want_video,
@@ -15,6 +22,7 @@ Result<std::unique_ptr<Endpoint>> open_link(const LinkArguments& arguments, Role
   options.role = role;
   options.software = "vhp " COUNTERPART_VERSION;
   options.token_file = arguments.token_file;
+  options.tls_file = arguments.tls_file;
   options.want_video = want_video;
   options.record_file = record_file;
   return connect_tcp(arguments.address, options, static_cast<std::int64_t>(arguments.patience_s * 1e9));

@@ -7,6 +7,10 @@
 
 #include "protocol/transport/endpoint.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace counterpart::vhp {
 
 // Exit codes of every program here.
@@ -19,7 +23,11 @@ struct LinkArguments {
   std::string address;
   std::string token_file;
   double patience_s = 3;  // how long to wait for the peer
+  std::string tls_file;
 };
+
+// --token-file and --tls-file.
+void add_security(CLI::App& command, LinkArguments& arguments);
 
 // Writes "vhp: ..." to stderr; returns kFailed, or kWrongUsage for what cannot be meant.
 int fail(const Error& error);

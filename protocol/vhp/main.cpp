@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
   add_script(app, exit_code);
   add_capture(app, exit_code);
   add_export(app, exit_code);
+  add_certificate(app, exit_code);
   add_completion(app, exit_code);
   counterpart::catch_stop_signals();
   std::signal(SIGPIPE, SIG_IGN);  // a reader of our output that has gone is seen by the write

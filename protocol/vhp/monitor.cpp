@@ -158,7 +158,7 @@ void add_monitor(CLI::App& app, int& exit_code) {
   command->add_option("--every", arguments->every_s, "Seconds between lines")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command->add_option("--token-file", arguments->link.token_file, "The shared token, for other hosts");
+  add_security(*command, arguments->link);
   command->add_flag("--video", arguments->video, "Fetch the pictures, too, and count them");
   command->add_flag("--json", arguments->json, "One JSON object a line");
   command->callback([arguments, &exit_code] { exit_code = run_monitor(*arguments); });

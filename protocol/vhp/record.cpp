@@ -57,7 +57,7 @@ void add_record(CLI::App& app, int& exit_code) {
   command->add_option("file", arguments->file, "The capture to write, for example game.mcap")->required();
   command->add_option("--for", arguments->seconds, "Stop after so many seconds (0: on Ctrl-C)")
       ->check(CLI::NonNegativeNumber);
-  command->add_option("--token-file", arguments->link.token_file, "The shared token, for other hosts");
+  add_security(*command, arguments->link);
   command->add_flag("--no-video", arguments->no_video, "Without the pictures");
   command->add_flag("--json", arguments->json, "Result as JSON");
   command->callback([arguments, &exit_code] { exit_code = run_record(*arguments); });

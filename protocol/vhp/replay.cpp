@@ -19,7 +19,7 @@ struct ReplayArguments {
   std::string file;
   std::string role;
   std::string listen, connect;
-  std::string token_file;
+  LinkArguments link;  // but for address and patience
   double speed = 1;
   bool lockstep = false;
   double patience_s = 60;
@@ -29,7 +29,8 @@ Result<std::unique_ptr<Endpoint>> open_end(const ReplayArguments& arguments, Rol
   LinkOptions options;
   options.role = role;
   options.software = "vhp " COUNTERPART_VERSION " replay";
-  options.token_file = arguments.token_file;
+  options.token_file = arguments.link.token_file;
+  options.tls_file = arguments.link.tls_file;
   options.lockstep = arguments.lockstep;
   if (!arguments.listen.empty()) return listen_tcp(arguments.listen, options);
   return connect_tcp(arguments.connect, options, static_cast<std::int64_t>(arguments.patience_s * 1e9));
@@ -153,7 +154,7 @@ void add_replay(CLI::App& app, int& exit_code) {
   command->add_option("--patience", arguments->patience_s, "Seconds to wait for the peer")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  command->add_option("--token-file", arguments->token_file, "The shared token, for other hosts");
+  add_security(*command, arguments->link);
   command->callback([arguments, &exit_code] {
     if (arguments->listen.empty() == arguments->connect.empty()) {
       throw CLI::ValidationError("replay", "give --listen HOST:PORT or --connect HOST:PORT");

@@ -23,8 +23,7 @@ namespace {
 struct ScriptArguments {
   std::string file;
   std::string renderer = "127.0.0.1:7402", tracker = "127.0.0.1:7401";
-  std::string token_file;
-  double patience_s = 3;
+  LinkArguments link;  // but for the address
   bool check = false;
   bool json = false;
 };
@@ -44,8 +43,9 @@ class Runner {
   Result<void> open(const std::vector<Statement>& statements) {
     for (const bool tracker : {false, true}) {
       if (!needs(statements, tracker)) continue;
-      const std::string& address = tracker ? arguments_.tracker : arguments_.renderer;
-      auto link = open_link({address, arguments_.token_file, arguments_.patience_s}, Role::director, false);
+      LinkArguments where = arguments_.link;
+      where.address = tracker ? arguments_.tracker : arguments_.renderer;
+      auto link = open_link(where, Role::director, false);
       if (!link) return tl::make_unexpected(link.error());
       (tracker ? tracker_ : renderer_) = std::move(*link);
     }
@@ -265,8 +265,9 @@ void add_script(CLI::App& app, int& exit_code) {
   command->add_option("file", arguments->file, "The scenario; - reads it from stdin")->required();
   command->add_option("--renderer", arguments->renderer, "Where commands go")->capture_default_str();
   command->add_option("--tracker", arguments->tracker, "Where controls go and events come from")->capture_default_str();
-  command->add_option("--token-file", arguments->token_file, "The shared token, for other hosts");
-  command->add_option("--patience", arguments->patience_s, "Seconds to wait for the peers")->check(CLI::PositiveNumber);
+  add_security(*command, arguments->link);
+  command->add_option("--patience", arguments->link.patience_s, "Seconds to wait for the peers")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--check", arguments->check, "Only read the scenario");
   command->add_flag("--json", arguments->json, "One JSON object for every statement");
   command->callback([arguments, &exit_code] { exit_code = run_script(*arguments); });

@@ -96,7 +96,7 @@ void add_send(CLI::App& app, int& exit_code) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   send->add_flag("--no-wait", a->no_wait, "Only until the peer has taken it");
-  send->add_option("--token-file", a->link.token_file, "The shared token, for other hosts");
+  add_security(*send, a->link);
   send->add_flag("--json", a->json, "Answers as JSON lines");
   add_request(*send, a->request);
   send->callback([a, &exit_code] { exit_code = run_send(*a); });

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <string>
 #include <thread>
 #include <vector>
@@ -14,7 +15,9 @@
 #include <boost/asio.hpp>
 #include <unistd.h>
 
+#include "protocol/daemon/picture_memory.hpp"
 #include "protocol/transport/address.hpp"
+#include "protocol/transport/certificates.hpp"
 #include "protocol/transport/endpoint.hpp"
 
 namespace {
@@ -113,12 +116,18 @@ class Plain {
 
 // --- our link: in real time for answers, in lockstep for streams, so that nothing is dropped ---
 
-LinkOptions options_of(Role role, bool lockstep, const std::string& record_file) {
+struct Way {
+  bool lockstep = false;
+  std::string record_file, tls_file;
+};
+
+LinkOptions options_of(Role role, const Way& way) {
   LinkOptions options;
   options.role = role;
   options.software = "bench";
-  options.lockstep = lockstep;
-  options.record_file = record_file;
+  options.lockstep = way.lockstep;
+  options.record_file = way.record_file;
+  options.tls_file = way.tls_file;
   return options;
 }
 
@@ -137,8 +146,8 @@ void serve_link(Endpoint& endpoint) {
 
 class Ours {
  public:
-  Ours(const std::string& address, bool lockstep, const std::string& record_file) {
-    auto link = connect_tcp(address, options_of(Role::renderer, lockstep, record_file), 5 * kSecond);
+  Ours(std::uint16_t port, const Way& way) {
+    auto link = connect_tcp("127.0.0.1:" + std::to_string(port), options_of(Role::renderer, way), 5 * kSecond);
     if (!link) {
       std::fprintf(stderr, "%s\n", link.error().message.c_str());
       std::exit(1);
@@ -228,47 +237,59 @@ double median_ratio(const std::vector<double>& ours, const std::vector<double>& 
 int main(int argc, char** argv) {
   const int rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 5;
   const std::string only = argc > 2 ? argv[2] : "";
+  keep_picture_memory();  // as the daemons do; plain Asio reads into memory of its own, made once
+  const std::string certificates = (std::filesystem::temp_directory_path() / "link_bench_tls").string();
+  std::filesystem::remove_all(certificates);
+  if (!make_certificates(certificates, {"tracker", "renderer"}, std::chrono::days(1))) return 1;
   int ports[2];
   if (pipe(ports) != 0) return 1;
   const pid_t child = fork();
   if (child == 0) {
     asio::io_context io;
     tcp::acceptor acceptor(io, {asio::ip::address_v4::loopback(), 0});
-    auto endpoint = listen_tcp("127.0.0.1:0", options_of(Role::tracker, true, ""));
-    if (!endpoint) return 1;
-    const std::uint16_t both[2] = {acceptor.local_endpoint().port(), parse_address((*endpoint)->address())->port};
-    if (write(ports[1], both, sizeof both) != sizeof both) return 1;
+    auto endpoint = listen_tcp("127.0.0.1:0", options_of(Role::tracker, {true}));
+    auto secure = listen_tcp("127.0.0.1:0", options_of(Role::tracker, {true, "", certificates + "/tracker.pem"}));
+    if (!endpoint || !secure) return 1;
+    const std::uint16_t all[3] = {acceptor.local_endpoint().port(), parse_address((*endpoint)->address())->port,
+                                  parse_address((*secure)->address())->port};
+    if (write(ports[1], all, sizeof all) != sizeof all) return 1;
     std::thread plain([&] { serve_plain(acceptor); });
+    std::thread tls([&] { serve_link(**secure); });
     serve_link(**endpoint);
   }
-  std::uint16_t both[2] = {0, 0};
-  if (read(ports[0], both, sizeof both) != sizeof both) return 1;
-  const std::string address = "127.0.0.1:" + std::to_string(both[1]);
+  std::uint16_t all[3] = {0, 0, 0};
+  if (read(ports[0], all, sizeof all) != sizeof all) return 1;
   VideoFrame frame;
   frame.width = 720;
   frame.height = 576;
   frame.stride = 2160;
   frame.bytes.assign(2160 * 576, 7);
   PoseEstimate pose;
-  Rows plain, ours, recorded;
+  const std::string tls_file = certificates + "/renderer.pem";
+  Rows plain, ours, recorded, secure;
   {
-    Plain a(both[0]);
-    Ours b(address, false, "");
-    Ours c(address, false, "/tmp/link_bench.mcap");
-    Ours d(address, true, "");
+    Plain a(all[0]);
+    Ours b(all[1], {});
+    Ours c(all[1], {false, "/tmp/link_bench.mcap"});
+    Ours d(all[1], {true});
+    Ours e(all[2], {false, "", tls_file});
+    Ours f(all[2], {true, "", tls_file});
     for (int round = 0; round < rounds; ++round) {
       if (only.empty() || only == "ping_pong") {
         plain.ping_pong_us.push_back(1e6 * a.ping_pong(5000, 228));
         ours.ping_pong_us.push_back(1e6 * b.ping_pong(5000));
         recorded.ping_pong_us.push_back(1e6 * c.ping_pong(5000));
+        secure.ping_pong_us.push_back(1e6 * e.ping_pong(5000));
       }
       if (only.empty() || only == "small") {
         plain.small_per_s.push_back(a.one_way(100'000, 228));
         ours.small_per_s.push_back(d.one_way(100'000, pose, 16'000));
+        secure.small_per_s.push_back(f.one_way(100'000, pose, 16'000));
       }
       if (only.empty() || only == "frames") {
         plain.frames_per_s.push_back(a.one_way(200, 48 + 32 + frame.bytes.size()));
         ours.frames_per_s.push_back(d.one_way(200, frame, 8));
+        secure.frames_per_s.push_back(f.one_way(200, frame, 8));
       }
     }
   }
@@ -276,6 +297,7 @@ int main(int argc, char** argv) {
   std::printf("{\n");
   print("plain_asio", plain);
   print("link", ours);
+  print("link_tls", secure);
   std::printf("  \"ratios\": {\"ping_pong\": %.2f, \"small\": %.2f, \"frames\": %.2f, \"recording_adds\": %.3f}\n}\n",
               median_ratio(ours.ping_pong_us, plain.ping_pong_us), median_ratio(ours.small_per_s, plain.small_per_s),
               median_ratio(ours.frames_per_s, plain.frames_per_s),

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
+#include "protocol/daemon/picture_memory.hpp"
 #include "protocol/daemon/stop_signal.hpp"
 #include "tracker_server/programs/corners.hpp"
 #include "tracker_server/programs/programs.hpp"
@@ -94,6 +95,7 @@ void add_serve(CLI::App& app, int& exit_code) {
       ->required();
   command->add_option("--listen", serve.listen, "HOST:PORT for renderers and tools")->capture_default_str();
   command->add_option("--token-file", serve.link.token_file, "needed to listen on anything but loopback");
+  command->add_option("--tls-file", serve.link.tls_file, "TLS 1.3, with this file of vhp certificate");
   command->add_option("--board", arguments->board_file, "JSON with the board's sizes");
   command->add_option("--squares", serve.observe.board.squares, "a side")
       ->check(CLI::IsMember({8, 10}))
@@ -151,6 +153,7 @@ void add_serve(CLI::App& app, int& exit_code) {
       return;
     }
     catch_stop_signals();
+    keep_picture_memory();
     if (auto served = counterpart::serve(arguments->serve); !served) {
       spdlog::error("{}", served.error().message);
       exit_code = 1;

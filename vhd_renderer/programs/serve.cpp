@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <spdlog/spdlog.h>
 
+#include "protocol/daemon/picture_memory.hpp"
 #include "protocol/daemon/stop_signal.hpp"
 #include "vhd_renderer/pipeline/serve.hpp"
 
@@ -40,6 +41,7 @@ void add_serve(CLI::App& app, int& exit_code) {
   command->add_flag("--lockstep", renderer.lockstep, "composite every frame, in order");
   command->add_option("--token-file", renderer.link.token_file,
                       "shared with the tracker, for other addresses than loopback");
+  command->add_option("--tls-file", renderer.link.tls_file, "TLS 1.3, with this file of vhp certificate");
   command->add_option("--patience", arguments->patience_s, "seconds to wait for a tracker at the start; 0: for ever")
       ->capture_default_str();
   command->add_option("--record", renderer.link.record_file, "capture everything on the link, MCAP");
@@ -52,6 +54,7 @@ void add_serve(CLI::App& app, int& exit_code) {
     options.link.software = "vhd_renderer " COUNTERPART_VERSION;
     options.link.lockstep = options.lockstep;
     catch_stop_signals();
+    keep_picture_memory();
     if (auto served = counterpart::serve(options); !served) {
       spdlog::error("{}", served.error().message);
       exit_code = 1;

@@ -10,49 +10,20 @@
 #include "protocol/transport/address.hpp"
 #include "protocol/transport/endpoint.hpp"
 #include "protocol/transport/jpeg.hpp"
+#include "tests/support/inbound.hpp"
 #include "tests/support/link_options.hpp"
 #include "tests/support/relay.hpp"
 
 namespace counterpart {
 namespace {
 
+using testing_support::collect;
+using testing_support::first;
+using testing_support::joined;
+using testing_support::messages;
 using testing_support::options_of;
 
 constexpr std::int64_t kSecond = 1'000'000'000;
-
-// Collects what comes until the condition holds or ten seconds have passed.
-std::vector<Inbound> collect(Endpoint& endpoint, const std::function<bool(const std::vector<Inbound>&)>& enough) {
-  std::vector<Inbound> all;
-  for (int i = 0; i < 100 && !enough(all); ++i) {
-    for (Inbound& inbound : endpoint.receive(kSecond / 10)) all.push_back(std::move(inbound));
-  }
-  return all;
-}
-
-template <class T>
-std::vector<T> messages(const std::vector<Inbound>& all) {
-  std::vector<T> found;
-  for (const Inbound& inbound : all) {
-    const auto* received = std::get_if<Received>(&inbound);
-    if (received == nullptr) continue;
-    if (const auto* message = std::get_if<T>(&received->message)) found.push_back(*message);
-  }
-  return found;
-}
-
-template <class T>
-const T* first(const std::vector<Inbound>& all) {
-  for (const Inbound& inbound : all) {
-    if (const auto* found = std::get_if<T>(&inbound)) return found;
-  }
-  return nullptr;
-}
-
-PeerId joined(Endpoint& endpoint) {
-  const auto all = collect(endpoint, [](const auto& a) { return first<PeerJoined>(a) != nullptr; });
-  const auto* peer = first<PeerJoined>(all);
-  return peer == nullptr ? 0 : peer->peer;
-}
 
 TEST(TcpEndpoint, CarriesCommandsOneWayFeedbackTheOtherAndPicturesBeside) {
   auto tracker = listen_tcp("127.0.0.1:0", options_of(Role::tracker));

@@ -211,12 +211,14 @@ TEST(VhpCapture, DoctorRecoverAndDiff) {
 }
 
 // The client in docs/ was written from the page alone; it talks to the real thing.
-TEST(PythonClient, SendsACommandAndHearsTheAnswer) {
-  auto renderer = listen_tcp("127.0.0.1:0", options_of(Role::renderer));
+void expect_python_to_be_answered(const LinkOptions& options, const std::string& words) {
+  auto renderer = listen_tcp("127.0.0.1:0", options);
+  ASSERT_TRUE(renderer) << renderer.error().message;
   auto outcome = std::async([&] {
     Outcome done;
     const std::string line = "timeout 20 python3 " COUNTERPART_SOURCE_DIR "/docs/counterpart_client.py " +
-                             (*renderer)->address() + R"( --send '{"id": 77, "verb": "keyframe", "clip": "nod"}')";
+                             (*renderer)->address() + words +
+                             R"( --send '{"id": 77, "verb": "keyframe", "clip": "nod"}')";
     FILE* pipe = popen(line.c_str(), "r");
     char buffer[4096];
     while (const std::size_t count = std::fread(buffer, 1, sizeof buffer, pipe)) done.out.append(buffer, count);
@@ -230,6 +232,37 @@ TEST(PythonClient, SendsACommandAndHearsTheAnswer) {
   EXPECT_EQ(seen[0].id, 77U);
   EXPECT_EQ(std::get<Keyframe>(seen[0].action).clip, "nod");
   EXPECT_NE(done.out.find("\"state\": \"finished\""), std::string::npos);
+}
+
+TEST(PythonClient, SendsACommandAndHearsTheAnswer) {
+  expect_python_to_be_answered(options_of(Role::renderer), "");
+}
+
+TEST(PythonClient, SpeaksTlsWithWhatVhpCertificateMakes) {
+  TemporaryFolder folder;
+  const Outcome made = run("vhp", {"certificate", folder.path("tls"), "--host", "left", "--host", "right"});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  LinkOptions options = options_of(Role::renderer);
+  options.tls_file = folder.path("tls/left.pem");
+  expect_python_to_be_answered(options, " --tls-file " + folder.path("tls/right.pem"));
+}
+
+TEST(VhpSend, SpeaksTls) {
+  TemporaryFolder folder;
+  ASSERT_EQ(run("vhp", {"certificate", folder.path("tls")}).exit_code, 0);
+  LinkOptions options = options_of(Role::renderer);
+  options.tls_file = folder.path("tls/renderer.pem");
+  auto renderer = listen_tcp("127.0.0.1:0", options);
+  ASSERT_TRUE(renderer) << renderer.error().message;
+  auto outcome = std::async([&] {
+    return run("vhp", {"send", "--to", (*renderer)->address(), "--tls-file", folder.path("tls/tracker.pem"), "keyframe",
+                       "nod"});
+  });
+  EXPECT_EQ(perform(**renderer, outcome).size(), 1U);
+  EXPECT_EQ(outcome.get().exit_code, 0);
+  const Outcome plain = run("vhp", {"send", "--to", (*renderer)->address(), "keyframe", "nod"});
+  EXPECT_EQ(plain.exit_code, 1);
+  EXPECT_NE(plain.err.find("--tls-file"), std::string::npos) << plain.err;
 }
 
 }  // namespace
