@@ -20,8 +20,13 @@ constexpr double clear_evidence = 2.7;
 constexpr double undecided = 0.12;
 constexpr double undecided_score = 0.2;
 
-// Of the squares that are never played on so many are looked at as a whole: how busy is one on which nothing stands?
-constexpr std::size_t floor_every = 5;
+// A fifth of the squares that are never played on, all over the board, is looked at as a whole: how busy is a square on
+// which nothing stands?
+bool shows_floor(std::size_t cell, int squares) {
+  const auto n = static_cast<std::size_t>(squares);
+  const std::size_t row = cell / n;
+  return (row + cell % n) % 2 == 0 && (cell / 2 + 2 * row) % 5 == 0;
+}
 
 // An empty square is never taken for quieter than these shares of the step between light and dark squares: on a clean,
 // bright board a smear would stand out as much as a piece.
@@ -334,7 +339,7 @@ std::vector<CellLook> look_at_cells(const BoardView& view, std::optional<int> pl
   cells.reserve(view.cells.size());
   for (std::size_t i = 0; i < view.cells.size(); ++i) {
     const bool unplayed = played && parity_of(i, view.squares) != static_cast<std::size_t>(*played);
-    const bool ground_only = unplayed && i % floor_every != 0;
+    const bool ground_only = unplayed && !shows_floor(i, view.squares);
     cells.push_back(look_at(view.cells[i], zones, ground_only));
   }
   measure_cover(view, most, cells);
@@ -344,10 +349,10 @@ std::vector<CellLook> look_at_cells(const BoardView& view, std::optional<int> pl
 BoardLight board_light(const std::vector<CellLook>& cells, int squares) {
   const std::array<Colour, 2> usual = usual_grounds(cells, squares);
   std::vector<float> structures;
-  for (std::size_t i = 0; i < cells.size(); i += floor_every)
-    if (parity_of(i, squares) == 0 && cells[i].seen) structures.push_back(cells[i].structure);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (shows_floor(i, squares) && cells[i].seen) structures.push_back(cells[i].structure);
   constexpr float least = 1;  // no camera is quite without noise
-  return {length(usual[0] - usual[1]), structures.empty() ? least : std::max(least, median(structures))};
+  return {length(usual[0] - usual[1]), structures.empty() ? 0 : std::max(least, median(structures))};
 }
 
 Reading read_appearance(const std::vector<CellLook>& cells, int squares, const Foreknowledge& known) {

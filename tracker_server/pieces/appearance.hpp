@@ -70,7 +70,7 @@ struct Foreknowledge {
 // How well the board can be seen in a picture, grey levels.
 struct BoardLight {
   double step = 0;   // between the usual colours of light and dark squares
-  double floor = 0;  // how busy a square on which nothing stands looks: noise and grain
+  double floor = 0;  // how busy a square on which nothing stands looks: noise and grain; 0: none of them is seen
 };
 
 BoardLight board_light(const std::vector<CellLook>& cells, int squares);

@@ -15,7 +15,6 @@ constexpr double trusted_share = 0.9;  // of the known squares must look as they
 constexpr double clearly_apart = 2.5;  // standard deviations between the two kinds
 constexpr double least_scatter = 0.1;  // of a feature: a clean start position says little about later squares
 constexpr double dark_share = 0.25;    // of the usual step between the board's colours
-constexpr double most_noise = 4;       // times the usual, in steps
 
 }  // namespace
 
@@ -55,7 +54,7 @@ bool SquareCalibration::learn(const std::vector<KnownSquare>& squares, const Boa
   empty_ += share * (mean[0] - empty_);
   taken_ += share * (mean[1] - taken_);
   scatter_ += share * (scatter - scatter_);
-  light_.floor += share * (light.floor - light_.floor);
+  if (light.floor > 0) light_.floor += (light_.floor > 0 ? share : 1) * (light.floor - light_.floor);
   light_.step += share * (light.step - light_.step);
   update();
 
@@ -84,7 +83,7 @@ double SquareCalibration::score(const SquareFeatures& features) const {
 }
 
 ExtraNoise SquareCalibration::extra_noise(const BoardLight& light) const {
-  if (!ready_ || !(light.step > 0)) return {};
+  if (!ready_ || !(light.step > 0) || !(light.floor > 0) || !(light_.floor > 0)) return {};
   constexpr double play = 1.15;  // from picture to picture
   const double now = light.floor / light.step, usual = light_.floor / light_.step;
   if (now < play * usual) return {};
@@ -92,8 +91,7 @@ ExtraNoise SquareCalibration::extra_noise(const BoardLight& light) const {
 }
 
 bool SquareCalibration::too_dark(const BoardLight& light) const {
-  return ready_ &&
-         (light.step < dark_share * light_.step || light.floor * light_.step > most_noise * light_.floor * light.step);
+  return ready_ && light.step < dark_share * light_.step;
 }
 
 }  // namespace counterpart

@@ -107,6 +107,9 @@ void PieceReader::learn(const BoardView& view, const std::vector<CellLook>& look
     if (look.seen)
       known.push_back({features_of(look, light.step, extra), expected_[static_cast<std::size_t>(square - 1)] != 'e'});
   }
+  // Of a board that is half out of the picture nothing is usual.
+  constexpr double enough = 0.6;
+  if (static_cast<double>(known.size()) < enough * last) return;
   if (calibration_.learn(known, light)) learn_tolerance(view, looks, light);
 }
 

@@ -196,6 +196,10 @@ void ObserveContext::restart(const std::optional<std::array<double, 8>>& corners
   if (corners_px) state_->tracker.start_at(points_of(*corners_px));
 }
 
+void ObserveContext::read_again() {
+  state_->reader.forget();
+}
+
 void ObserveContext::expect(const std::string& real_squares) {
   state_->reader.expect(real_squares);
 }

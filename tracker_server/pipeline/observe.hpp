@@ -47,6 +47,9 @@ class ObserveContext {
   // Forgets the pose and searches again, from these corners if given.
   void restart(const std::optional<std::array<double, 8>>& corners_px);
 
+  // Forgets what squares and pieces look like: the light is another one for good.
+  void read_again();
+
   // Which pieces the game expects now (one of "wbWBe" a square, real pieces only, others 'e'): lets the reader learn
   // what an empty square and a piece look like. Optional; never decides a reading by itself.
   void expect(const std::string& real_squares);

@@ -160,6 +160,8 @@ void Server::obey(const Control& control) {
     std::array<double, 8> corners{};
     std::copy(control.corners_px.begin(), control.corners_px.end(), corners.begin());
     context_->restart(corners);
+  } else if (control.kind == ControlKind::read_again) {
+    context_->read_again();
   } else if (control.kind == ControlKind::quit) {
     spdlog::info("asked to quit");
     quit_ = true;

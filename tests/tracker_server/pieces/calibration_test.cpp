@@ -86,7 +86,6 @@ TEST(Calibration, NoiseInDimLightIsNotTakenForPieces) {
   ASSERT_FALSE(calibration.too_dark(dusk));
   EXPECT_EQ(right(calibration, known(dim, dusk.step, calibration.extra_noise(dusk))), 50);
   EXPECT_LT(right(calibration, known(dim, dusk.step, {})), 40) << "this light is no trial";
-  EXPECT_TRUE(calibration.too_dark({dusk.step, 25})) << "nothing but noise";
 }
 
 TEST(Calibration, ABoardThatStandsOtherwiseTeachesNothing) {

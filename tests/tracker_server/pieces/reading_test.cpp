@@ -234,5 +234,30 @@ TEST(PieceReader, BothSidesPiecesKeepTheirColours) {
   EXPECT_EQ(wrong_cells(scene, seen.cells), 0);
 }
 
+// The camera turns away until only a strip of the board is left, and back after a while.
+TEST(PieceReader, AStripOfTheBoardTeachesNothing) {
+  BoardScene scene = game_scene();
+  for (int square = 1; square <= 20; ++square) scene.pieces.push_back({cell_of_square(square, 10)});
+  PieceReader reader(10);
+  reader.expect(std::string(20, 'b') + std::string(30, 'e'));
+  FrameStamp stamp;
+  const BoardView whole = view_board(test::paint(scene, 2), 10, to_pixel(scene));
+  BoardView strip = whole;
+  for (int row = 0; row < 10; ++row)
+    for (int col = 0; col < 7; ++col) strip.cells[static_cast<std::size_t>(row * 10 + col)] = {};
+  Occupancy seen;
+  const auto look = [&](const BoardView& view, int pictures) {
+    for (int i = 0; i < pictures; ++i) {
+      stamp.capture_ns += 40'000'000;
+      seen = reader.read(view, stamp).occupancy;
+    }
+  };
+  look(whole, 8);
+  EXPECT_EQ(wrong_cells(scene, seen.cells), 0);
+  look(strip, 150);
+  look(whole, 8);
+  EXPECT_EQ(wrong_cells(scene, seen.cells), 0);
+}
+
 }  // namespace
 }  // namespace counterpart
