@@ -5,6 +5,7 @@
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include "protocol/daemon/picture_memory.hpp"
 #include "protocol/daemon/stop_signal.hpp"
 #include "stage/programs/render.hpp"
 #include "stage/programs/serve.hpp"
@@ -23,6 +24,7 @@ int main(int argc, char** argv) {
   // Mesa's software driver then draws in the thread that asks: a tenth less of work for each frame, and the cores are
   // others' to use. Whoever sets it is obeyed.
   setenv("LP_NUM_THREADS", "0", 0);
+  counterpart::keep_picture_memory();
   using namespace counterpart::stage;
   spdlog::set_default_logger(spdlog::stderr_logger_mt("stage"));
   spdlog::set_pattern("%H:%M:%S.%e %n %l: %v");

@@ -8,6 +8,7 @@
 
 #include <sys/resource.h>
 
+#include "protocol/daemon/picture_memory.hpp"
 #include "stage/camera/sensor.hpp"
 #include "stage/film/film.hpp"
 #include "stage/film/hidden.hpp"
@@ -28,6 +29,7 @@ double cpu_ms() {
 int main(int argc, char** argv) {
   using namespace counterpart::stage;
   setenv("LP_NUM_THREADS", "0", 0);  // as `stage` does
+  counterpart::keep_picture_memory();
   const int frames = argc > 2 ? std::atoi(argv[2]) : 60;
   if (argc < 2 || frames < 1) {
     std::fprintf(stderr, "usage: film_cost SCENARIO [FRAMES]\n");
