@@ -127,7 +127,7 @@ void PieceReader::learn_tolerance(const BoardView& view, const std::vector<CellL
 bool PieceReader::looks_turned_round() const {
   const int last = playable_squares(squares_);
   if (static_cast<int>(expected_.size()) != last) return false;
-  int as_expected = 0, turned = 0;
+  int wrong = 0, wrong_if_turned = 0;
   for (int square = 1; square <= last; ++square) {
     const Cell cell = cell_of_square(square, squares_);
     const CellReading seen = memory_[static_cast<std::size_t>(cell.row * squares_ + cell.col)].steady;
@@ -136,11 +136,12 @@ bool PieceReader::looks_turned_round() const {
       const char want = expected_[static_cast<std::size_t>(expected_square - 1)];
       return (want != 'e') == (seen != CellReading::empty);
     };
-    as_expected += fits(square);
-    turned += fits(last + 1 - square);
+    wrong += !fits(square);
+    wrong_if_turned += !fits(last + 1 - square);
   }
-  // Clear enough that a hand over some pieces cannot do it.
-  return turned > 0.9 * last && as_expected < 0.6 * last;
+  // Clear enough that neither a hand over some pieces nor a long capture can do it.
+  constexpr int clearly = 6;
+  return wrong_if_turned < 0.1 * last && wrong >= clearly + 3 * wrong_if_turned;
 }
 
 }  // namespace counterpart

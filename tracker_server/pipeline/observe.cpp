@@ -234,7 +234,9 @@ Observation observe(const Frame& frame, ObserveContext& context) {
   if (reading.occupancy.covered) result.mask = mask_of(reading.cover, to_pixel, frame, board.squares);
   result.occupancy = reading.occupancy;
 
-  // Which side of the board is which cannot be told from its squares; once, at the start, the expected pieces tell it.
+  // Which side of the board is which cannot be told from its squares: the expected pieces tell it, once at the start
+  // and when the board comes back from elsewhere.
+  if (seen.either_way_round) state.orientation_checked = false;
   constexpr std::int64_t long_enough_ns = 200'000'000;
   if (!state.orientation_checked && reading.occupancy.stable_ns > long_enough_ns) {
     state.orientation_checked = true;

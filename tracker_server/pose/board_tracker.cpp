@@ -50,6 +50,13 @@ constexpr double smeared_if_fewer = 0.65, smeared_if_rms_px = 0.35, smeared_if_f
 
 const std::vector<FitRound> settle_rounds = {{1, 5, 2, 2}, {0, 5, 1, 3}, {0, 3, 1, 3}};
 
+// A pose that was followed for so many frames is right about which side of the board is which. One of a board that is
+// half out of the picture may be a quarter turn and a square off for a frame or two.
+constexpr int held_for_long = 12;
+// Turned further than this from where it was held, the board may as well lie the other way round: at 90 degrees both
+// are as near.
+constexpr double either_way_rad = 1.0;
+
 // Squares that a pose may be brought back by, one or two at a time.
 constexpr int most_steps_back = 3;
 
@@ -175,6 +182,8 @@ void BoardTracker::forget() {
   tracking_ = false;
   frames_unseen_ = 0;
   last_X_CB_.reset();
+  held_X_CB_.reset();
+  frames_held_ = 0;
   start_X_CB_.reset();
   start_corners_.reset();
   motion_.forget();
@@ -209,6 +218,7 @@ void BoardTracker::turn_round() {
   const bool tracking = tracking_;
   forget();
   last_X_CB_ = X_CB;
+  held_X_CB_ = X_CB;
   contrast_ = contrast;
   tracking_ = tracking;
   ever_seen_ = true;
@@ -253,7 +263,7 @@ std::optional<BoardTracker::Attempt> BoardTracker::from_located(const LocatedBoa
     const PlanePose pose =
         known ? pose_of_board(H, options_.board, camera_) : pose_and_focal_of_board(H, options_.board, width, height);
     // Once seen, the board is taken to lie as it lay.
-    if (chosen && (!last_X_CB_ || angle_between(pose.X_CB, *last_X_CB_) >= angle_between(chosen->X_CB, *last_X_CB_)))
+    if (chosen && (!held_X_CB_ || angle_between(pose.X_CB, *held_X_CB_) >= angle_between(chosen->X_CB, *held_X_CB_)))
       continue;
     chosen = pose;
   }
@@ -266,6 +276,7 @@ std::optional<BoardTracker::Attempt> BoardTracker::from_located(const LocatedBoa
   }
   Attempt result = attempt(view, chosen->X_CB, settle_rounds);
   if (!result.good) return std::nullopt;
+  result.either_way_round = held_X_CB_ && angle_between(chosen->X_CB, *held_X_CB_) > either_way_rad;
   return result;
 }
 
@@ -322,6 +333,7 @@ void BoardTracker::accept(const Attempt& attempt, std::int64_t time_ns) {
     focal_.information = focal_memory * focal_.information + focal_trust * std::max(0.0, own);
   }
   last_X_CB_ = attempt.fit.X_CM;
+  if (!held_X_CB_ || ++frames_held_ >= held_for_long) held_X_CB_ = attempt.fit.X_CM;
   last_support_ = attempt.check.support;
   motion_.add(attempt.fit.X_CM, time_ns);
   if (!attempt.smeared) learn(attempt);
@@ -541,6 +553,7 @@ TrackedBoard BoardTracker::track(const cv::Mat& picture_bgr, std::int64_t time_n
     if (relocated) {
       motion_.forget();
       zoom_rate_ = 0;
+      frames_held_ = 0;
     }
     accept(*found, time_ns);
     result.status = relocated && !was_tracking ? TrackStatus::relocalised : TrackStatus::ok;
@@ -548,6 +561,7 @@ TrackedBoard BoardTracker::track(const cv::Mat& picture_bgr, std::int64_t time_n
     result.camera = found->fit.camera;
     result.fit = std::move(found->fit);
     result.check = found->check;
+    result.either_way_round = found->either_way_round;
     if (lens_)
       if (const auto calibration = lens_->add(picture_bgr, camera_, result.X_CB)) adopt(*calibration);
     return result;

@@ -41,6 +41,8 @@ struct TrackedBoard {
   Intrinsics camera;
   PoseFit fit;         // how it was fitted; of the last attempt if that failed
   ChequerCheck check;  // of the same pose
+  // Found again turned so far from where it was last held that it may as well lie the other way round: see turn_round.
+  bool either_way_round = false;
 };
 
 class BoardTracker {
@@ -68,6 +70,7 @@ class BoardTracker {
     ChequerCheck check;
     bool good = false;
     bool smeared = false;  // by motion: aligned with the reference view, not by edges
+    bool either_way_round = false;
   };
   Attempt attempt(const PictureView& view, const Eigen::Isometry3d& start, const std::vector<FitRound>& rounds) const;
   bool held_by_fixtures(const PoseFit& fit) const;
@@ -102,6 +105,8 @@ class BoardTracker {
   double contrast_ = 0;      // grey levels between light and dark squares
   double last_support_ = 0;  // of the last pose that was believed
   std::optional<Eigen::Isometry3d> last_X_CB_;
+  std::optional<Eigen::Isometry3d> held_X_CB_;  // the last one that was followed for long: which side is which
+  int frames_held_ = 0;                         // since the board was found
   std::optional<ReferenceView> reference_;
   double reference_way_px_ = 0;  // that the board had gone since the picture before
   int reference_age_ = 0;        // frames

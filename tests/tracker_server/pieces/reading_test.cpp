@@ -145,6 +145,32 @@ TEST(PieceReader, BelievesOnlyWhatStays) {
   EXPECT_EQ(at(to), CellReading::dark);
 }
 
+TEST(PieceReader, FewPiecesTellThatTheBoardIsTurnedRound) {
+  BoardScene scene = game_scene();
+  const std::vector<int> stand_on = {3, 14, 22, 36, 45, 50};
+  std::string as_seen(50, 'e'), turned(50, 'e'), three_taken;
+  for (const int square : stand_on) {
+    scene.pieces.push_back({cell_of_square(square, 10)});
+    as_seen[static_cast<std::size_t>(square - 1)] = 'w';
+    turned[static_cast<std::size_t>(50 - square)] = 'w';
+  }
+  three_taken = as_seen;
+  three_taken[10] = three_taken[30] = three_taken[40] = 'w';
+  const BoardView view = view_board(test::paint(scene, 2), 10, to_pixel(scene));
+  PieceReader reader(10);
+  FrameStamp stamp;
+  for (int i = 0; i < 8; ++i) {
+    stamp.capture_ns += 40'000'000;
+    reader.read(view, stamp);
+  }
+  reader.expect(turned);
+  EXPECT_TRUE(reader.looks_turned_round());
+  reader.expect(as_seen);
+  EXPECT_FALSE(reader.looks_turned_round());
+  reader.expect(three_taken);
+  EXPECT_FALSE(reader.looks_turned_round()) << "three pieces taken away are no turn";
+}
+
 TEST(PieceReader, TimeWithoutPicturesIsNotTimeWithoutChange) {
   BoardScene scene = game_scene();
   scene.pieces = {{cell_of_square(20, 10)}, {cell_of_square(33, 10)}};

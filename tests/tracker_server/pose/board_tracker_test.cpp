@@ -103,6 +103,34 @@ TEST(BoardTracker, SaysThatItIsLostAndComesBackByItself) {
   EXPECT_LT(error_either_way_px(scene, seen), exact_px);
 }
 
+// Seen for two pictures only, a pose may be a quarter turn wrong; which way round the board lies was known before that.
+TEST(BoardTracker, AGlanceDoesNotDecideWhichWayRoundTheBoardLies) {
+  BoardScene scene = plain_scene();
+  BoardTracker tracker(options_for(scene));
+  int frame = 0;
+  TrackedBoard seen;
+  const auto look = [&](double azimuth, int times) {
+    scene.X_CB = looking_at_board(0.75, 50 * degree, azimuth * degree);
+    const cv::Mat picture = test::paint(scene, 2);
+    for (int i = 0; i < times; ++i) seen = see(tracker, picture, frame++);
+  };
+  const cv::Mat nothing(576, 720, CV_8UC3, cv::Scalar(90, 100, 110));
+  const auto look_away = [&] {
+    for (int i = 0; i < 4; ++i) ASSERT_FALSE(has_pose(see(tracker, nothing, frame++)) && i == 3);
+  };
+  look(180, 20);
+  ASSERT_LT(farthest_crossing_px(scene.board, scene.camera, scene.X_CB, seen.camera, seen.X_CB), exact_px);
+  EXPECT_FALSE(seen.either_way_round);
+  look_away();
+  look(180 + 85, 1);
+  EXPECT_TRUE(seen.either_way_round) << "only the pieces can tell";
+  look(180 + 85, 1);
+  look_away();
+  look(180 - 10, 1);
+  EXPECT_FALSE(seen.either_way_round);
+  EXPECT_LT(farthest_crossing_px(scene.board, scene.camera, scene.X_CB, seen.camera, seen.X_CB), exact_px);
+}
+
 TEST(BoardTracker, IsNeverOneSquareOffAfterAJump) {
   BoardScene scene = plain_scene();
   BoardTracker tracker(options_for(scene));
