@@ -8,21 +8,39 @@
 #include <opencv2/imgproc.hpp>
 
 #include "stage/film/hidden.hpp"
+#include "vhd_renderer/body/character.hpp"
 
 namespace counterpart::stage {
 
-Film::Film(const Scenario& scenario, std::unique_ptr<Room> room)
-    : scenario_(scenario), room_(std::move(room)), now_(starting_world(scenario.board)), player_(scenario.player) {
+Film::Film(const Scenario& scenario, std::unique_ptr<SeatedBody> body, std::unique_ptr<Room> room)
+    : scenario_(scenario),
+      body_(std::move(body)),
+      room_(std::move(room)),
+      now_(starting_world(scenario.board)),
+      player_(scenario.player) {
   now_.player_present = scenario.player_present;
   now_.light = scenario.light;
   if (scenario.no_pieces || scenario.no_board) now_.pieces.clear();
   now_.board_present = !scenario.no_board;
   set_scene(now_, 0);
+  if (body_) body_->pass(0, now_);
   world_ = now_;
 }
 
 Result<Film> Film::begin(const Scenario& scenario) {
+  std::unique_ptr<SeatedBody> body;
+  std::string warning;
+  if (scenario.player_present && !scenario.player_figure.empty()) {
+    Result<std::unique_ptr<SeatedBody>> seated = SeatedBody::seat(scenario.player_figure, scenario.board);
+    if (!seated && ready_characters().count(scenario.player_figure) > 0) {
+      warning = seated.error().message + "; the mannequin sits there instead";
+      seated = SeatedBody::seat("mannequin", scenario.board);
+    }
+    if (!seated) return tl::make_unexpected(seated.error());
+    body = *std::move(seated);
+  }
   RoomOptions options;
+  options.body = body.get();
   options.width = scenario.intrinsics.width;
   options.height = scenario.intrinsics.height;
   options.board = scenario.board;
@@ -33,7 +51,9 @@ Result<Film> Film::begin(const Scenario& scenario) {
   options.fine = std::any_of(dist.begin(), dist.end(), [](double k) { return k != 0; });
   Result<std::unique_ptr<Room>> room = Room::furnish(options);
   if (!room) return tl::make_unexpected(room.error());
-  return Film(scenario, std::move(*room));
+  Film film(scenario, std::move(body), std::move(*room));
+  film.warning_ = warning;
+  return film;
 }
 
 View Film::view_at(double t_s, const World& world) const {
@@ -59,6 +79,7 @@ void Film::pass_until(double t_s) {
   if (t_s > now_s_) {
     player_.step(t_s - now_s_, now_);
     now_s_ = t_s;
+    if (body_) body_->pass(t_s, now_);
   }
   set_scene(now_, t_s);
 }

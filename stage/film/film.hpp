@@ -6,6 +6,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "protocol/vocabulary/stamp.hpp"
+#include "stage/player/seated_body.hpp"
 #include "stage/scenario/scenario.hpp"
 
 namespace counterpart::stage {
@@ -22,7 +23,7 @@ struct Truth {
   View view;
   std::string occupancy;     // of the real pieces, see occupancy_of
   bool holds_piece = false;  // in his hand: it stands nowhere
-  double hand_share = 0;     // of the playing surface, hidden by the player's arm
+  double hand_share = 0;     // of the playing surface, hidden by the player
   double edges_hidden =
       0;  // share of the outline's and the grid's length in the picture hidden by arm or pieces, or outside it
   double motion_px = 0;  // how far the board's corners moved since the frame before, the mean of four
@@ -49,15 +50,18 @@ class Film {
   // Lets a frame's time pass without taking its picture.
   void skip();
 
-  // Where the player's arm is seen in the last picture: CV_8UC1, 255 = arm.
+  // Where the player is seen in the last picture: CV_8UC1, 255 = player.
   cv::Mat arm_mask();
+
+  // Why the player looks different from what the scenario asks for; empty: he does not.
+  const std::string& warning() const { return warning_; }
 
   const Scenario& scenario() const { return scenario_; }
   const World& world() const { return world_; }
   const Player& player() const { return player_; }
 
  private:
-  Film(const Scenario& scenario, std::unique_ptr<Room> room);
+  Film(const Scenario& scenario, std::unique_ptr<SeatedBody> body, std::unique_ptr<Room> room);
   // What stands and happens in the room without the player.
   void set_scene(World& world, double t_s) const;
   View view_at(double t_s, const World& world) const;
@@ -66,7 +70,9 @@ class Film {
   cv::Mat expose_frame(double t_s);
 
   Scenario scenario_;
+  std::unique_ptr<SeatedBody> body_;  // null: the player's arm alone is seen
   std::unique_ptr<Room> room_;
+  std::string warning_;
   World world_;  // at the middle of the last exposure
   World now_;    // where the last partial exposure left it
   double now_s_ = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stage/player/seated_body.hpp"
 #include "stage/room/arm.hpp"
 
 namespace counterpart::stage {
@@ -69,8 +70,15 @@ bool outside(const View& view, const Eigen::Vector3d& point) {
   return !(at.x() >= 0 && at.y() >= 0 && at.x() <= view.intrinsics.width - 1 && at.y() <= view.intrinsics.height - 1);
 }
 
-std::vector<Capsule> arm_in(const World& world) {
+std::vector<Capsule> player_in(const World& world) {
   if (!world.player_present) return {};
+  if (world.seated) {
+    const Eigen::Isometry3f X_BR = world.X_RB.inverse().cast<float>();
+    std::vector<Capsule> shape;
+    for (const Capsule& c : world.seated->shape_R)
+      shape.push_back({X_BR * c.a_m, X_BR * c.b_m, c.radius_a_m, c.radius_b_m});
+    return shape;
+  }
   return arm_capsules(arm_for(world.hand.pinch_B), static_cast<float>(world.board.piece_radius_m));
 }
 
@@ -90,7 +98,7 @@ double object_edges_hidden(const World& world, std::size_t object, const View& v
   const Eigen::Isometry3d X_BO = world.X_RB.inverse() * it.X_RO;
   const Eigen::Vector3d eye = camera_position_B(view);
   const Eigen::Vector3d eye_O = X_BO.inverse() * eye;
-  const std::vector<Capsule> arm = arm_in(world);
+  const std::vector<Capsule> arm = player_in(world);
   double seen_m = 0, all_m = 0;
   for (const std::vector<int>& face : model.faces) {
     const auto at = [&](std::size_t i) { return model.vertices_O[static_cast<std::size_t>(face[i % face.size()])]; };
@@ -114,7 +122,7 @@ double object_edges_hidden(const World& world, std::size_t object, const View& v
 }
 
 Hidden hidden_shares(const World& world, const View& view) {
-  const std::vector<Capsule> arm = arm_in(world);
+  const std::vector<Capsule> arm = player_in(world);
   const Eigen::Vector3d eye = camera_position_B(view);
   const auto behind_arm = [&](const Eigen::Vector3d& point) { return behind_arm_or_sheet(world, arm, eye, point); };
   const auto behind_objects = [&](const Eigen::Vector3d& point) {

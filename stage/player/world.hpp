@@ -1,6 +1,7 @@
 // What stands and moves in the simulated room at one moment. Frame B, metres.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,8 @@ struct Sheet {
   double size_x_m = 0.5, size_y_m = 0.5;
 };
 
+struct SeatedPose;
+
 // Frame R is the room's: that of the board where it first lay.
 struct World {
   BoardGeometry board;
@@ -43,6 +46,7 @@ struct World {
   bool board_present = true;
   bool player_present = true;
   HandState hand;
+  std::shared_ptr<const SeatedPose> seated;  // the whole player; null: his arm alone is seen
 };
 
 // Moves the board with what stands on it; what lies beside it stays where it is in the room.

@@ -30,6 +30,7 @@ Result<void> run_render(const RenderOptions& options, const std::function<bool()
   const int frames = options.frames.value_or(scenario->frames);
   Result<Film> film = Film::begin(*scenario);
   if (!film) return tl::make_unexpected(film.error());
+  if (!film->warning().empty()) spdlog::warn("{}", film->warning());
   Result<SequenceWriter> writer = SequenceWriter::create(options.out, *scenario);
   if (!writer) return tl::make_unexpected(writer.error());
 

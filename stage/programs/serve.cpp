@@ -145,6 +145,7 @@ Result<void> run_serve(const ServeOptions& options, const std::function<bool()>&
   reseed(scenario, options.seed.value_or(scenario.seed));
   Result<Film> film = Film::begin(scenario);
   if (!film) return tl::make_unexpected(film.error());
+  if (!film->warning().empty()) spdlog::warn("{}", film->warning());
   LinkOptions link;
   link.role = Role::camera;
   link.software = std::string("stage ") + COUNTERPART_VERSION;

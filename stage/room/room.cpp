@@ -8,11 +8,16 @@
 
 #include <opencv2/imgproc.hpp>
 
+#include "stage/player/seated_body.hpp"
 #include "stage/room/arm.hpp"
 #include "stage/room/surfaces.hpp"
 #include "stage/room/textures.hpp"
 #include "stage/room/warp.hpp"
+#include "vhd_renderer/body/simplify.hpp"
 #include "vhd_renderer/draw/piece_shape.hpp"
+#include "vhd_renderer/motion/director.hpp"
+#include "vhd_renderer/scene/chair_shape.hpp"
+#include "vhd_renderer/scene/figure_items.hpp"
 
 namespace counterpart::stage {
 namespace {
@@ -20,6 +25,7 @@ namespace {
 constexpr float kWallY_m = -2.3f;
 constexpr float kSideWallX_m = 3.5f;
 const Eigen::Vector3f kWallPaint(0.60f, 0.57f, 0.51f);  // encoded, as the wall's texture
+constexpr std::size_t kArmParts = 4;
 constexpr int kPainted = 6;  // the last things of the furniture: floor, walls, skirting boards
 
 Eigen::Affine3f at(float x, float y, float z) {
@@ -97,6 +103,9 @@ struct Room::State {
   SurfaceId painted{};
   DrawItem pieces, cup, coffee, sheet;
   DrawItem hand, wrist, forearm, upper_arm;
+  Figure figure;  // of the whole player, as detailed as the picture can show
+  std::vector<DrawItem> figure_parts;
+  DrawItem chair;                      // the player's
   std::vector<DrawItem> objects;       // as in RoomOptions
   DrawItem piece_shadow, hand_shadow;  // coarser, and not seen themselves
   Warp warp;                           // of the board's top
@@ -104,6 +113,8 @@ struct Room::State {
   Lighting lighting(const World& world) const;
   std::vector<Circle> shadows_on_table(const World& world, const Lighting& light) const;
   std::vector<DrawItem> items(const World& world) const;
+  void add_arm(const World& world, std::vector<DrawItem>& items) const;
+  void add_body(const World& world, std::vector<DrawItem>& items) const;
   Result<void> build();
 };
 
@@ -241,6 +252,13 @@ Result<void> Room::State::build() {
     add(objects[i], mesh_of(polygon_model(plan.kind, plan.size_m), options.fine ? 0.03 : 0.5),
         {SurfaceId::lit, grain, paints.at(paint), 0.03f, 16, false}, here, !plan.on_floor);
   }
+  if (options.body != nullptr) {
+    figure = simplified(options.body->figure(), unseen_error_m(options.height));
+    add(chair, chair_shape(), {SurfaceId::lit, grain, {0.16f, 0.075f, 0.035f}, 0.05f, 16, false}, here, false);
+    Result<std::vector<DrawItem>> parts = figure_items(figure, r);
+    if (!parts) return tl::make_unexpected(parts.error());
+    figure_parts = *std::move(parts);
+  }
   add(sheet, plane_mesh(1, 1, 8, 8), {SurfaceId::lit, print, {0.78f, 0.77f, 0.72f}, 0.01f, 8, true}, here, true);
   return made;
 }
@@ -255,6 +273,10 @@ Lighting Room::State::lighting(const World& world) const {
   light.shadow_centre_B = {0, 0.1f, 0};
   light.shadow_radius_m = 0.55f;
   light.softness_m = 0.007f;
+  if (world.seated) {
+    light.shadow_centre_B = {0, 0.25f, 0.1f};
+    light.shadow_radius_m = 0.85f;
+  }
   return light;
 }
 
@@ -275,7 +297,13 @@ std::vector<Circle> Room::State::shadows_on_table(const World& world, const Ligh
   for (const RealPiece& piece : world.pieces) {
     if (piece.square == 0) add(piece.p_B, 2 * world.board.piece_radius_m);
   }
-  if (world.player_present) {
+  if (world.player_present && world.seated) {
+    const Eigen::Isometry3d X_BR = world.X_RB.inverse();
+    for (const Capsule& c : world.seated->shape_R) {
+      if (c.a_m.z() < table_z && c.b_m.z() < table_z) continue;  // his legs
+      add(X_BR * ((c.a_m + c.b_m) / 2).cast<double>(), (c.b_m - c.a_m).norm() / 2 + 1.2F * c.radius_a_m);
+    }
+  } else if (world.player_present) {
     const ArmPose pose = arm_for(world.hand.pinch_B);
     add(pose.X_BHand * Eigen::Vector3d(0.06, 0, 0), 0.16);
     for (const double share : {0.25, 0.75}) {
@@ -291,8 +319,43 @@ std::vector<Circle> Room::State::shadows_on_table(const World& world, const Ligh
   return result;
 }
 
+// What is seen of the player where it is his arm alone: kArmParts items, and a shadow.
+void Room::State::add_arm(const World& world, std::vector<DrawItem>& items) const {
+  const ArmPose pose = arm_for(world.hand.pinch_B);
+  for (const auto& [item, X] : {std::pair{&hand, &pose.X_BHand},
+                                {&wrist, &pose.X_BForearm},
+                                {&forearm, &pose.X_BForearm},
+                                {&upper_arm, &pose.X_BUpperArm}}) {
+    items.push_back(*item);
+    items.back().X_BO = {Eigen::Affine3f(X->cast<float>())};
+  }
+  items.push_back(hand_shadow);
+  items.back().X_BO = {Eigen::Affine3f(pose.X_BHand.cast<float>())};
+}
+
+// The player in whole, his chair last.
+void Room::State::add_body(const World& world, std::vector<DrawItem>& items) const {
+  const Eigen::Isometry3f X_BR = world.X_RB.inverse().cast<float>();
+  Performance pose;
+  for (const Eigen::Isometry3f& X_RJ : world.seated->X_RJ) pose.X_BJ.push_back(X_BR * X_RJ);
+  pose.morphs = world.seated->face;
+  std::vector<SkinnedPart> skinned;
+  skin(figure, options.body->morph_names(), pose, skinned);
+  for (std::size_t i = 0; i < figure_parts.size(); ++i) {
+    renderer->update_mesh(figure_parts[i].mesh, skinned[i].positions_m, skinned[i].normals);
+    items.push_back(figure_parts[i]);
+  }
+  items.push_back(chair);
+  items.back().X_BO = {Eigen::Affine3f(X_BR * world.seated->X_RChair)};
+}
+
 std::vector<DrawItem> Room::State::items(const World& world) const {
   std::vector<DrawItem> items;  // near things first
+  if (world.player_present && world.seated && options.body != nullptr) {
+    add_body(world, items);
+  } else if (world.player_present) {
+    add_arm(world, items);
+  }
   DrawItem standing = pieces;
   standing.X_BO.clear();
   for (const RealPiece& piece : world.pieces) {
@@ -308,18 +371,6 @@ std::vector<DrawItem> Room::State::items(const World& world) const {
       standing.X_BO.push_back(
           Eigen::Affine3f(Eigen::Translation3f(0, 0, static_cast<float>(world.board.piece_height_m))) * X_BO);
     }
-  }
-  if (world.player_present) {
-    const ArmPose pose = arm_for(world.hand.pinch_B);
-    for (const auto& [item, X] : {std::pair{&hand, &pose.X_BHand},
-                                  {&wrist, &pose.X_BForearm},
-                                  {&forearm, &pose.X_BForearm},
-                                  {&upper_arm, &pose.X_BUpperArm}}) {
-      items.push_back(*item);
-      items.back().X_BO = {Eigen::Affine3f(X->cast<float>())};
-    }
-    items.push_back(hand_shadow);
-    items.back().X_BO = {Eigen::Affine3f(pose.X_BHand.cast<float>())};
   }
   const Eigen::Affine3f X_BR(world.X_RB.inverse().cast<float>());
   if (world.sheet) {
@@ -376,10 +427,12 @@ cv::Mat Room::picture(const World& world, const View& view, const std::optional<
 
 cv::Mat Room::arm_mask(const World& world, const View& view) {
   std::vector<DrawItem> items = state_->items(world);
-  const std::size_t arm_parts = world.player_present ? 4 : 0;
+  const std::size_t parts = !world.player_present ? 0 : world.seated ? state_->figure_parts.size() : kArmParts;
   for (std::size_t i = 0; i < items.size(); ++i) {
-    const bool arm = i < arm_parts;
-    items[i].material.surface = arm ? SurfaceId::unlit : SurfaceId::catcher;
+    const bool player = i < parts;
+    items[i].material.surface = player ? SurfaceId::unlit : SurfaceId::catcher;
+    if (player) items[i].material.texture = TextureId::white;
+    if (player) items[i].material.colour = {1, 1, 1};
     items[i].casts_shadow = false;
   }
   Lighting no_shadows;

@@ -386,6 +386,7 @@ Result<void> read_knock(const Node& node, Scenario& s) {
 Reader player_keys(Scenario& s) {
   return object({
       {"present", flag(s.player_present)},
+      {"figure", text(s.player_figure)},
       {"practise", flag(s.player.practise)},
       {"speed", number(s.player.speed, 0.1, 5)},
       {"forgets_s", number(s.player.forgets_s, 0, 600)},

@@ -40,6 +40,7 @@ struct Scenario {
   Shutter shutter;
   std::vector<Event> events;
   bool player_present = true;
+  std::string player_figure;  // whom he looks like; empty: his arm alone is seen
   PlayerOptions player;
   double light = 1;
 };

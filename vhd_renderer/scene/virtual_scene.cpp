@@ -9,18 +9,11 @@
 #include "vhd_renderer/draw/piece_shape.hpp"
 #include "vhd_renderer/motion/stance.hpp"
 #include "vhd_renderer/scene/chair_shape.hpp"
+#include "vhd_renderer/scene/figure_items.hpp"
 #include "vhd_renderer/scene/scene_state.hpp"
 
 namespace counterpart {
 namespace {
-
-// What a picture of this height cannot show of somebody who sits as near as people sit.
-float shown_error_m(int height) {
-  constexpr float kNearest_m = 0.8f;
-  constexpr float kFocalHeights = 1.1f;  // a usual focal length, in heights of the picture
-  constexpr float kPixels = 0.35f;
-  return kPixels * kNearest_m / (kFocalHeights * static_cast<float>(height));
-}
 
 constexpr float kTableWidth_m = 1.6f;  // if nobody says how wide it is
 
@@ -109,7 +102,7 @@ std::size_t VirtualScene::human_triangles() const {
 Result<std::unique_ptr<VirtualScene>> VirtualScene::create(int width, int height, const Figure& figure,
                                                            LevelOfDetail detail) {
   auto state = std::make_unique<State>();
-  state->figure = detail == LevelOfDetail::all ? figure : simplified(figure, shown_error_m(height));
+  state->figure = detail == LevelOfDetail::all ? figure : simplified(figure, unseen_error_m(height));
   auto renderer = Renderer::create(width, height, 1024);
   if (!renderer) return tl::make_unexpected(renderer.error());
   state->renderer = std::move(*renderer);
@@ -118,31 +111,10 @@ Result<std::unique_ptr<VirtualScene>> VirtualScene::create(int width, int height
 }
 
 Result<void> VirtualScene::State::add_figure() {
-  std::vector<TextureId> textures;
-  for (const Texture& texture : figure.textures) textures.push_back(renderer->add_texture(texture));
+  Result<std::vector<DrawItem>> items = figure_items(figure, *renderer);
+  if (!items) return tl::make_unexpected(items.error());
+  human = *std::move(items);
   grain = renderer->add_texture(grain_texture());
-  for (const FigurePart& part : figure.parts) {
-    MeshData mesh{part.positions_m, part.normals, part.uvs, part.triangles};
-    mesh.uvs.resize(mesh.positions_m.size(), Eigen::Vector2f::Zero());
-    const Result<MeshId> id = renderer->add_mesh(mesh);
-    if (!id)
-      return failure(id.error().code,
-                     "Part " + part.name + " of the figure " + figure.name + ": " + id.error().message);
-    DrawItem item;
-    item.mesh = *id;
-    item.material.surface = part.alpha == AlphaMode::cutout ? SurfaceId::cutout : SurfaceId::lit;
-    if (part.texture >= 0 && static_cast<std::size_t>(part.texture) < textures.size()) {
-      item.material.texture = textures[static_cast<std::size_t>(part.texture)];
-    }
-    item.material.colour = part.colour;
-    item.material.gloss = 0.05f;
-    item.material.polish = 16;
-    item.material.double_sided = part.double_sided;
-    // Small inner parts cost much in the shadow map and show nothing.
-    item.casts_shadow = part.name.find("eye") == std::string::npos && part.name.find("teeth") == std::string::npos &&
-                        part.name.find("tongue") == std::string::npos;
-    human.push_back(item);
-  }
   return {};
 }
 

@@ -1,11 +1,14 @@
 #include "stage/film/film.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
+
+#include "vhd_renderer/body/build_character.hpp"
 
 namespace counterpart::stage {
 namespace {
@@ -347,6 +350,48 @@ TEST(Film, ArmMaskIsWhereTheArmIs) {
   }
   EXPECT_GT(most, 3000);
   EXPECT_LT(most, 720 * 576 / 3);
+}
+
+// The hand of the whole player is where the player's hand is, and what he hides is hidden.
+TEST(Film, TheWholePlayerHoldsWhatThePlayerHolds) {
+  Scenario scenario;
+  scenario.player.practise = true;
+  scenario.player_figure = "mannequin";
+  scenario.path.eye_R = {1.05, -0.35, 0.70};
+  scenario.path.target_R = {0, 0.22, 0.10};
+  Film film = Film::begin(scenario).value();
+  const Figure figure = figure_of("mannequin").value();
+  const auto joint = [&](const std::string& name) {
+    const auto at = std::find_if(figure.joints.begin(), figure.joints.end(),
+                                 [&](const Joint& candidate) { return candidate.name == name; });
+    return static_cast<std::size_t>(at - figure.joints.begin());
+  };
+  int held = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Shot shot = film.next();
+    const World& world = film.world();
+    ASSERT_TRUE(world.seated);
+    const cv::Mat mask = film.arm_mask();
+    EXPECT_GT(cv::countNonZero(mask), 30000) << "trunk and head";
+    if (world.hand.held_piece < 0) continue;
+    ++held;
+    // Thumb and forefinger end on both sides of the piece: their last joints are a finger's bone off its middle.
+    for (const char* name : {"r_thumb3", "r_index3"}) {
+      const Eigen::Vector3d tip = world.seated->X_RJ.at(joint(name)).translation().cast<double>();
+      EXPECT_LT((tip - world.X_RB * world.hand.pinch_B).norm(), 0.05) << name << " in frame " << i;
+    }
+    EXPECT_GT(shot.truth.hand_share, 0.02);
+    EXPECT_LT(shot.truth.hand_share, 0.6);
+  }
+  EXPECT_GT(held, 10);
+}
+
+TEST(Film, APlayersFigureThatIsNotThereIsNamed) {
+  Scenario scenario;
+  scenario.player_figure = "/nowhere/nobody.glb";
+  const auto film = Film::begin(scenario);
+  ASSERT_FALSE(film);
+  EXPECT_NE(film.error().message.find("/nowhere/nobody.glb"), std::string::npos) << film.error().message;
 }
 
 }  // namespace

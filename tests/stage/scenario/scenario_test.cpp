@@ -114,6 +114,7 @@ TEST(Scenario, EveryKeySaysWhatItAllows) {
                {"board", "piece_diameter_mm", "1", "5 to 100"},
                {"board", "present", "\"no\"", "true or false"},
                {"player", "speed", "0", "0.1 to 5"},
+               {"player", "figure", "3", "a text"},
                {"player", "forgets_s", "-1", "0 to 600"},
                {"player", "knocks_over", "[0]", "1 to 500"},
                {"player", "hand_rests", "{}", "an array"}};
