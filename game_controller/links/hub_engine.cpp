@@ -44,8 +44,13 @@ struct Level {
 class HubEngine {
  public:
   HubEngine(std::istream& in, std::ostream& out, const EndgameTables* endgames)
-      : in_(in), out_(out), endgames_(endgames), record_(rules_, start_position(rules_)) {}
-  ~HubEngine() { stop_search(); }
+      : in_(in), out_(out), tied_(in.tie(nullptr)), endgames_(endgames), record_(rules_, start_position(rules_)) {}
+  ~HubEngine() {
+    stop_search();
+    in_.tie(tied_);
+  }
+  HubEngine(const HubEngine&) = delete;
+  HubEngine& operator=(const HubEngine&) = delete;
 
   void run() {
     std::string text;
@@ -277,6 +282,9 @@ class HubEngine {
 
   std::istream& in_;
   std::ostream& out_;
+  // Reading std::cin flushes what it is tied to, which is std::cout; while the search writes to that, lines went out
+  // twice, and the answer to one position was taken for that to the next.
+  std::ostream* tied_;
   const EndgameTables* endgames_;
   const Rules& rules_ = international_rules;
   int level_of_play_ = 0;  // 0: full strength within the limits of `level`

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -33,6 +34,30 @@ TEST(HubLine, refuses_what_does_not_end) {
 TEST(HubNumber, takes_whole_numbers_in_range_only) {
   EXPECT_EQ(hub_number("1.5", 0, 2), 1.5);
   for (const char* text : {"", "x", "1x", "3", "-1", "nan", "inf"}) EXPECT_FALSE(hub_number(text, 0, 2)) << text;
+}
+
+// Counts how often what has been written is sent on.
+class CountingBuffer : public std::stringbuf {
+ public:
+  int flushes = 0;
+
+ protected:
+  int sync() override {
+    ++flushes;
+    return std::stringbuf::sync();
+  }
+};
+
+// The search writes from a thread of its own: who waits for the next line must keep off the output meanwhile.
+TEST(HubEngine, reading_does_not_touch_the_output) {
+  CountingBuffer buffer;
+  std::ostream out(&buffer);
+  std::istringstream in("hub\ninit\nping\nping\n");
+  in.tie(&out);
+  run_hub_engine(in, out);
+  const std::string said = buffer.str();
+  EXPECT_EQ(buffer.flushes, std::count(said.begin(), said.end(), '\n')) << said;
+  EXPECT_EQ(in.tie(), &out);
 }
 
 std::vector<std::string> conversation(const std::string& said) {
