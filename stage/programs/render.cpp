@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <future>
 
 #include <opencv2/imgcodecs.hpp>
 #include <spdlog/spdlog.h>
@@ -37,12 +38,15 @@ Result<void> run_render(const RenderOptions& options, const std::function<bool()
   using Clock = std::chrono::steady_clock;
   Clock::duration drawing{};
   int done = 0;
+  std::future<Result<void>> writing;  // of the picture before: it is compressed while the next one is drawn
+  const auto written = [&writing] { return writing.valid() ? writing.get() : Result<void>(); };
   for (int i = 0; i < options.from && !stop_requested(); ++i) film->skip();
   while (done < frames && !stop_requested()) {
     const auto start = Clock::now();
-    const Shot shot = film->next();
+    Shot shot = film->next();
     drawing += Clock::now() - start;
-    if (const Result<void> written = writer->write(shot); !written) return written;
+    if (const Result<void> before = written(); !before) return before;
+    writing = std::async(std::launch::async, [&writer, shot = std::move(shot)] { return writer->write(shot); });
     if (options.masks) {
       char name[32];
       std::snprintf(name, sizeof name, "/mask_%05d.png", options.from + done);
@@ -52,6 +56,7 @@ Result<void> run_render(const RenderOptions& options, const std::function<bool()
     }
     show_progress(++done, frames);
   }
+  if (const Result<void> last = written(); !last) return last;
   spdlog::info("{} frames to {}, {:.1f} ms each to draw", done, options.out,
                std::chrono::duration<double, std::milli>(drawing).count() / std::max(1, done));
   return {};
