@@ -9,14 +9,26 @@
 namespace counterpart::stage {
 namespace {
 
+struct Sphere {
+  Eigen::Vector3f middle{0, 0, 0};
+  float radius = 0;
+};
+
+// Round a capsule, with a little room.
+Sphere sphere_round(const Capsule& c) {
+  return {(c.a_m + c.b_m) / 2, (c.b_m - c.a_m).norm() / 2 + std::max(c.radius_a_m, c.radius_b_m) + 1e-3f};
+}
+
+bool passes_by(const Sphere& sphere, const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
+  const Eigen::Vector3f way = to - from;
+  const float nearest = std::clamp((sphere.middle - from).dot(way) / way.squaredNorm(), 0.f, 1.f);
+  return (from + nearest * way - sphere.middle).squaredNorm() > sphere.radius * sphere.radius;
+}
+
 // Does the capsule come between the two points? Steps along the segment, nearer than the capsule's surface each time.
 bool blocks(const Capsule& capsule, const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
+  if (passes_by(sphere_round(capsule), from, to)) return false;
   const Eigen::Vector3f way = to - from;
-  // Most lines of sight pass by a sphere round the capsule.
-  const Eigen::Vector3f middle = (capsule.a_m + capsule.b_m) / 2;
-  const float reach = (capsule.b_m - capsule.a_m).norm() / 2 + std::max(capsule.radius_a_m, capsule.radius_b_m) + 1e-3f;
-  const float nearest = std::clamp((middle - from).dot(way) / way.squaredNorm(), 0.f, 1.f);
-  if ((from + nearest * way - middle).squaredNorm() > reach * reach) return false;
   const float length = way.norm();
   float gone = 0;
   while (gone < length) {
@@ -70,23 +82,51 @@ bool outside(const View& view, const Eigen::Vector3d& point) {
   return !(at.x() >= 0 && at.y() >= 0 && at.x() <= view.intrinsics.width - 1 && at.y() <= view.intrinsics.height - 1);
 }
 
-std::vector<Capsule> player_in(const World& world) {
+// Capsules near each other: most lines of sight pass by all of them.
+struct Cluster {
+  std::vector<Capsule> capsules;
+  Sphere round;
+};
+
+std::vector<Cluster> clustered(const std::vector<Capsule>& capsules) {
+  constexpr std::size_t kTogether = 6;  // neighbours in the list are neighbours in space
+  std::vector<Cluster> clusters;
+  for (std::size_t first = 0; first < capsules.size(); first += kTogether) {
+    Cluster cluster;
+    const std::size_t last = std::min(first + kTogether, capsules.size());
+    for (std::size_t i = first; i < last; ++i) {
+      cluster.capsules.push_back(capsules[i]);
+      cluster.round.middle += sphere_round(capsules[i]).middle / static_cast<float>(last - first);
+    }
+    for (const Capsule& c : cluster.capsules) {
+      const Sphere own = sphere_round(c);
+      cluster.round.radius = std::max(cluster.round.radius, (own.middle - cluster.round.middle).norm() + own.radius);
+    }
+    clusters.push_back(cluster);
+  }
+  return clusters;
+}
+
+std::vector<Cluster> player_in(const World& world) {
   if (!world.player_present) return {};
   if (world.seated) {
     const Eigen::Isometry3f X_BR = world.X_RB.inverse().cast<float>();
     std::vector<Capsule> shape;
     for (const Capsule& c : world.seated->shape_R)
       shape.push_back({X_BR * c.a_m, X_BR * c.b_m, c.radius_a_m, c.radius_b_m});
-    return shape;
+    return clustered(shape);
   }
-  return arm_capsules(arm_for(world.hand.pinch_B), static_cast<float>(world.board.piece_radius_m));
+  return clustered(arm_capsules(arm_for(world.hand.pinch_B), static_cast<float>(world.board.piece_radius_m)));
 }
 
-bool behind_arm_or_sheet(const World& world, const std::vector<Capsule>& arm, const Eigen::Vector3d& eye,
-                         const Eigen::Vector3d& point) {
-  return (world.sheet && behind_sheet(*world.sheet, eye, point)) ||
-         std::any_of(arm.begin(), arm.end(),
-                     [&](const Capsule& c) { return blocks(c, eye.cast<float>(), point.cast<float>()); });
+bool behind_player_or_sheet(const World& world, const std::vector<Cluster>& player, const Eigen::Vector3d& eye,
+                            const Eigen::Vector3d& point) {
+  if (world.sheet && behind_sheet(*world.sheet, eye, point)) return true;
+  const Eigen::Vector3f from = eye.cast<float>(), to = point.cast<float>();
+  return std::any_of(player.begin(), player.end(), [&](const Cluster& cluster) {
+    return !passes_by(cluster.round, from, to) && std::any_of(cluster.capsules.begin(), cluster.capsules.end(),
+                                                              [&](const Capsule& c) { return blocks(c, from, to); });
+  });
 }
 
 }  // namespace
@@ -98,7 +138,7 @@ double object_edges_hidden(const World& world, std::size_t object, const View& v
   const Eigen::Isometry3d X_BO = world.X_RB.inverse() * it.X_RO;
   const Eigen::Vector3d eye = camera_position_B(view);
   const Eigen::Vector3d eye_O = X_BO.inverse() * eye;
-  const std::vector<Capsule> arm = player_in(world);
+  const std::vector<Cluster> player = player_in(world);
   double seen_m = 0, all_m = 0;
   for (const std::vector<int>& face : model.faces) {
     const auto at = [&](std::size_t i) { return model.vertices_O[static_cast<std::size_t>(face[i % face.size()])]; };
@@ -109,7 +149,7 @@ double object_edges_hidden(const World& world, std::size_t object, const View& v
         const Eigen::Vector3d point_O = at(i) + (k + 0.5) / kSamples * way;
         const Eigen::Vector3d point = X_BO * point_O;
         bool unseen = outside(view, point) || comes_between(model, eye_O, point_O) || behind_table(world, eye, point) ||
-                      behind_arm_or_sheet(world, arm, eye, point);
+                      behind_player_or_sheet(world, player, eye, point);
         for (std::size_t other = 0; other < world.objects.size() && !unseen; ++other) {
           unseen = other != object && behind_object(world, world.objects[other], eye, point);
         }
@@ -122,9 +162,11 @@ double object_edges_hidden(const World& world, std::size_t object, const View& v
 }
 
 Hidden hidden_shares(const World& world, const View& view) {
-  const std::vector<Capsule> arm = player_in(world);
+  const std::vector<Cluster> player = player_in(world);
   const Eigen::Vector3d eye = camera_position_B(view);
-  const auto behind_arm = [&](const Eigen::Vector3d& point) { return behind_arm_or_sheet(world, arm, eye, point); };
+  const auto behind_player = [&](const Eigen::Vector3d& point) {
+    return behind_player_or_sheet(world, player, eye, point);
+  };
   const auto behind_objects = [&](const Eigen::Vector3d& point) {
     return std::any_of(world.objects.begin(), world.objects.end(),
                        [&](const RoomObject& object) { return behind_object(world, object, eye, point); });
@@ -136,7 +178,7 @@ Hidden hidden_shares(const World& world, const View& view) {
   for (int row = 0; row < 2 * n; ++row) {
     for (int col = 0; col < 2 * n; ++col) {
       const Eigen::Vector3d point((col + 0.5) * size / 2 - half, (row + 0.5) * size / 2 - half, 0);
-      hidden.surface_by_arm += behind_arm(point) ? 1.0 / (4 * n * n) : 0;
+      hidden.surface_by_arm += behind_player(point) ? 1.0 / (4 * n * n) : 0;
     }
   }
   constexpr int kSamplesASquare = 3;
@@ -147,7 +189,7 @@ Hidden hidden_shares(const World& world, const View& view) {
       const double at = line * size - half;
       for (const Eigen::Vector3d& point : {Eigen::Vector3d(s, at, 0), Eigen::Vector3d(at, s, 0)}) {
         const bool unseen =
-            outside(view, point) || behind_piece(world, eye, point) || behind_arm(point) || behind_objects(point);
+            outside(view, point) || behind_piece(world, eye, point) || behind_player(point) || behind_objects(point);
         hidden.edges += unseen ? 1.0 / (2 * along * (n + 1)) : 0;
       }
     }

@@ -84,6 +84,17 @@ Eigen::Matrix4f shadow_from_B(const Lighting& lighting, float radius_m) {
   return m;
 }
 
+// All that a shadow map depends on, but the places of the vertices.
+std::vector<float> shadows_of(const Eigen::Matrix4f& from_B, std::span<const DrawItem> items) {
+  std::vector<float> all(from_B.data(), from_B.data() + from_B.size());
+  for (const DrawItem& item : items) {
+    if (!item.casts_shadow) continue;
+    all.push_back(static_cast<float>(item.mesh));
+    for (const Eigen::Affine3f& X_BO : item.X_BO) all.insert(all.end(), X_BO.data(), X_BO.data() + 16);
+  }
+  return all;
+}
+
 }  // namespace
 
 Eigen::Vector3f level_light(const Lighting& lighting) {
@@ -103,6 +114,7 @@ struct Renderer::State {
   GlProgram shadow_program;
   GLint shadow_program_matrix = -1;
   std::vector<float> instance_rows;
+  std::vector<float> shadow_map_shows;  // what it was last drawn from; empty: nothing
 
   void draw_instances(const DrawItem& item);
   void draw_shadow_map(const Eigen::Matrix4f& from_B, std::span<const DrawItem> items);
@@ -217,6 +229,7 @@ void Renderer::update_mesh(MeshId mesh, std::span<const Eigen::Vector3f> positio
                            std::span<const Eigen::Vector3f> normals) {
   const DrawMesh& known = state_->meshes.at(static_cast<std::size_t>(mesh));
   if (positions_m.size() != known.vertices || normals.size() != known.vertices) return;
+  state_->shadow_map_shows.clear();
   state_->context->make_current();
   const auto bytes = static_cast<GLsizeiptr>(known.vertices * sizeof(Eigen::Vector3f));
   glBindBuffer(GL_ARRAY_BUFFER, known.positions.id());
@@ -270,6 +283,9 @@ void Renderer::State::draw_instances(const DrawItem& item) {
 }
 
 void Renderer::State::draw_shadow_map(const Eigen::Matrix4f& from_B, std::span<const DrawItem> items) {
+  std::vector<float> wanted = shadows_of(from_B, items);
+  if (wanted == shadow_map_shows) return;  // the camera alone has moved
+  shadow_map_shows = std::move(wanted);
   glBindFramebuffer(GL_FRAMEBUFFER, shadow.id());
   glViewport(0, 0, shadow_size, shadow_size);
   glClear(GL_DEPTH_BUFFER_BIT);

@@ -116,6 +116,42 @@ TEST_F(RendererTest, CatcherHidesAndIsBlackAndDarkensUnderAThing) {
   EXPECT_EQ(behind[0] | behind[1] | behind[2], 0);
 }
 
+// Whatever changes what a shadow comes from changes the shadow: its place, its light, its vertices, whether it casts
+// one.
+TEST_F(RendererTest, ShadowsFollowWhatCastsThem) {
+  const MeshId table = add(plane_mesh(1, 1, 4, 4));
+  const MeshData cube = box_mesh({0.1f, 0.1f, 0.1f});
+  const MeshId ball = add(cube);
+  const View view = plain_view();
+  Lighting light;
+  light.direction_B = {0, 0, 1};
+  const DrawItem floor = item(table, SurfaceId::catcher, {0, 0, -0.1f});
+  const auto is_dark = [&](const DrawItem& thing, const Eigen::Vector3d& p_B) {
+    const Drawing drawing = renderer->draw(view, light, std::vector<DrawItem>{floor, thing});
+    return pixel(drawing, view, p_B)[3] > 60;
+  };
+  DrawItem thing = item(ball, SurfaceId::lit, {0, 0, 0.1f});
+  thing.visible = false;
+  const Eigen::Vector3d below(0, 0, -0.1), aside(0.2, 0, -0.1);
+  EXPECT_TRUE(is_dark(thing, below));
+  EXPECT_FALSE(is_dark(thing, aside));
+  thing.X_BO[0].translation().x() = 0.2f;
+  EXPECT_FALSE(is_dark(thing, below));
+  EXPECT_TRUE(is_dark(thing, aside));
+
+  std::vector<Eigen::Vector3f> moved = cube.positions_m;
+  for (Eigen::Vector3f& p : moved) p.x() -= 0.2f;
+  renderer->update_mesh(ball, moved, cube.normals);
+  EXPECT_TRUE(is_dark(thing, below));
+  EXPECT_FALSE(is_dark(thing, aside));
+
+  light.direction_B = {1, 0, 1};  // 0.2 m above the table: the shadow falls 0.2 m aside
+  EXPECT_FALSE(is_dark(thing, below));
+  EXPECT_TRUE(is_dark(thing, {-0.2, 0, -0.1}));
+  thing.casts_shadow = false;
+  EXPECT_FALSE(is_dark(thing, {-0.2, 0, -0.1}));
+}
+
 TEST_F(RendererTest, GivesDepthInMetres) {
   const MeshId plate = add(plane_mesh(0.4f, 0.4f, 4, 4));
   const View view = plain_view();
