@@ -142,7 +142,7 @@ Result<Character> parse_character(std::string_view json_text) {
 const std::map<std::string, std::string>& ready_characters() {
   static const std::map<std::string, std::string> ready{
       {"default", R"({"name": "default", "sex": "male", "age_years": 38, "origins": {"caucasian": 1}, "muscle": 0.55,
-        "weight": 0.5, "height": 0.55, "clothes": ["male_casualsuit03", "shoes01"], "hair": "short01",
+        "weight": 0.5, "height": 0.55, "clothes": ["male_casualsuit03", "shoes01"], "hair": "short02",
         "eyes": "brown", "eyebrows": "eyebrow001"})"},
       {"ines", R"({"name": "ines", "sex": "female", "age_years": 28, "origins": {"caucasian": 0.8, "african": 0.2},
         "muscle": 0.5, "weight": 0.45, "height": 0.55, "clothes": ["female_casualsuit01", "shoes03"], "hair": "bob02",
