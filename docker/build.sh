@@ -1,6 +1,7 @@
 #!/bin/sh
 # Builds both images with buildah, on a base made by debootstrap where no registry can be reached, and starts each
-# program once. Needs: buildah, debootstrap, root (or a user with sub-ids).
+# program once. Finished steps are kept: both images share them, and a second run goes on where one ended. Needs: buildah,
+# debootstrap, root (or a user with sub-ids).
 #   docker/build.sh [DEBIAN-MIRROR]      without one: the one that debootstrap knows
 set -eu
 cd "$(dirname "$0")/.."
@@ -16,7 +17,7 @@ if ! $run inspect --type image "$base" >/dev/null 2>&1; then
   $run rm "$container" >/dev/null
 fi
 for program in tracker_server vhd_renderer; do
-  $run build --isolation chroot --ignorefile "docker/$program.Dockerfile.dockerignore" -f "docker/$program.Dockerfile" -t "counterpart/$program" .
+  $run build --layers --isolation chroot --ignorefile "docker/$program.Dockerfile.dockerignore" -f "docker/$program.Dockerfile" -t "counterpart/$program" .
   container=$($run from "counterpart/$program")
   $run run --isolation chroot --user counterpart "$container" -- "$program" --version
   $run rm "$container" >/dev/null

@@ -80,18 +80,19 @@ void put(Bytes& out, const FrameDone& m) {
 
 // The most frequent message: its places are known, so nothing has to grow.
 void put(Bytes& out, const PoseEstimate& m) {
-  std::array<std::uint8_t, kPoseSize> body{};
-  store(body.data(), m.stamp.frame_id);
-  store(body.data() + 8, m.stamp.capture_ns);
-  store(body.data() + 16, m.object_id);
-  store(body.data() + 20, m.intrinsics_id);
-  store(body.data() + 24, static_cast<std::uint32_t>(m.status));
-  store(body.data() + 28, m.rms_px);
-  store(body.data() + 32, m.seen_share);
-  for (std::size_t i = 0; i < 4; ++i) store(body.data() + 40 + 8 * i, m.X_CB.q[i]);
-  for (std::size_t i = 0; i < 3; ++i) store(body.data() + 72 + 8 * i, m.X_CB.p[i]);
-  for (std::size_t i = 0; i < m.covariance.size(); ++i) store(body.data() + 96 + 4 * i, m.covariance[i]);
-  out.assign(body.begin(), body.end());
+  out.resize(kPoseSize);
+  std::uint8_t* const body = out.data();
+  store(body, m.stamp.frame_id);
+  store(body + 8, m.stamp.capture_ns);
+  store(body + 16, m.object_id);
+  store(body + 20, m.intrinsics_id);
+  store(body + 24, static_cast<std::uint32_t>(m.status));
+  store(body + 28, m.rms_px);
+  store(body + 32, m.seen_share);
+  store(body + 36, std::uint32_t{0});
+  for (std::size_t i = 0; i < 4; ++i) store(body + 40 + 8 * i, m.X_CB.q[i]);
+  for (std::size_t i = 0; i < 3; ++i) store(body + 72 + 8 * i, m.X_CB.p[i]);
+  for (std::size_t i = 0; i < m.covariance.size(); ++i) store(body + 96 + 4 * i, m.covariance[i]);
 }
 
 void put(Bytes& out, const VideoFrame& m) {
@@ -260,7 +261,7 @@ Result<void> encode_fixed(const T& message, Bytes& out) {
       return bad(MessageType::video, "has a size that does not fit its codec");
     }
   }
-  out.clear();
+  if constexpr (!std::is_same_v<T, PoseEstimate>) out.clear();  // a pose is written over what is there
   put(out, message);
   return {};
 }

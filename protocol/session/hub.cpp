@@ -233,10 +233,12 @@ std::optional<WireMessage> Hub::next_to_write(ConnectionId id, std::int64_t now_
   if (found == connections_.end()) return std::nullopt;
   Connection& connection = found->second;
   Peer* peer = peer_of(connection);
-  std::optional<Outgoing> next;
+  const Outgoing* next = nullptr;
+  Outgoing urgent;
   if (!connection.urgent.empty()) {
-    next = std::move(connection.urgent.front());
+    urgent = std::move(connection.urgent.front());
     connection.urgent.pop_front();
+    next = &urgent;
   } else if (connection.stage == Stage::open && peer != nullptr) {
     Lane& lane = lane_of(*peer, connection.lane);
     const std::int64_t by_ns = connection.acknowledge_by_ns;
@@ -248,7 +250,7 @@ std::optional<WireMessage> Hub::next_to_write(ConnectionId id, std::int64_t now_
     }
     next = lane.take();
   }
-  if (!next) return std::nullopt;
+  if (next == nullptr) return std::nullopt;
   Header header;
   header.type = static_cast<std::uint16_t>(next->type);
   header.type_version = kTypeVersion;
@@ -383,8 +385,8 @@ void Hub::leave(std::int64_t now_ns) {
 
 // --- the program's side ------------------------------------------------------------------------------------------
 
-void Hub::send(PeerId peer, const Outgoing& message, std::int64_t now_ns) {
-  if (const auto found = peers_.find(peer); found != peers_.end()) push(found->second, message, now_ns);
+void Hub::send(PeerId peer, Outgoing message, std::int64_t now_ns) {
+  if (const auto found = peers_.find(peer); found != peers_.end()) push(found->second, std::move(message), now_ns);
 }
 
 void Hub::broadcast(const Outgoing& message, std::int64_t now_ns) {
@@ -393,11 +395,11 @@ void Hub::broadcast(const Outgoing& message, std::int64_t now_ns) {
   for (const PeerId id : ids) send(id, message, now_ns);
 }
 
-void Hub::push(Peer& peer, const Outgoing& message, std::int64_t now_ns) {
+void Hub::push(Peer& peer, Outgoing message, std::int64_t now_ns) {
   const bool video = message.type == MessageType::video;
   if (video && !peer.want_video) return;
   Lane& lane = lane_of(peer, video ? LaneName::video : LaneName::main);
-  lane.push(message);
+  lane.push(std::move(message));
   if (!lane.overflowed()) return;
   end_session(peer, {ErrorCode::limit_exceeded, "too many messages wait for a peer that does not take them"}, now_ns);
 }
@@ -438,6 +440,11 @@ ConnectionId Hub::carrier(PeerId id, MessageType type) const {
   const auto found = peers_.find(id);
   if (found == peers_.end()) return 0;
   return type == MessageType::video ? found->second.video_connection : found->second.main_connection;
+}
+
+bool Hub::keeps(PeerId id, MessageType type) const {
+  const auto found = peers_.find(id);
+  return found != peers_.end() && found->second.main.keeps(type);
 }
 
 std::uint64_t Hub::dropped_pictures() const {

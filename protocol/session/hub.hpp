@@ -69,6 +69,7 @@ class Hub {
   bool exists(ConnectionId connection) const { return connections_.count(connection) > 0; }
   bool carries_video(ConnectionId connection) const;
   ConnectionId carrier(PeerId peer, MessageType type) const;  // on which messages of this type go to it; 0: none now
+  bool keeps(PeerId peer, MessageType type) const;            // none of these is lost or replaced by a newer one
   // Grows whenever connections or sessions come, go or change: what concerns one connection alone leaves it as it is.
   std::uint64_t changes() const { return changes_; }
   std::uint64_t dropped_pictures() const;  // of all peers, by newer ones
@@ -85,7 +86,7 @@ class Hub {
   void leave(std::int64_t now_ns);
 
   // --- the program's side ---------------------------------------------------------------------------------------
-  void send(PeerId peer, const Outgoing& message, std::int64_t now_ns);
+  void send(PeerId peer, Outgoing message, std::int64_t now_ns);
   void broadcast(const Outgoing& message, std::int64_t now_ns);
   void report(PeerId peer, const Error& error, std::int64_t now_ns);  // a local trouble, as an ErrorReport
   std::vector<Inbound> take_inbound();
@@ -157,7 +158,7 @@ class Hub {
               bool said_goodbye = false);
   void forget_peer(PeerId id);
   void end_session(Peer& peer, const Error& why, std::int64_t now_ns);
-  void push(Peer& peer, const Outgoing& message, std::int64_t now_ns);
+  void push(Peer& peer, Outgoing message, std::int64_t now_ns);
   void tick(ConnectionId id, Connection& connection, std::int64_t now_ns);
   void begin_dial(Dial& dial, std::int64_t now_ns);
   std::optional<std::int64_t> quick_limit(std::int64_t now_ns) const;

@@ -51,15 +51,18 @@ void Lane::drop_oldest_like(const Outgoing& message) {
   ++dropped_;
 }
 
-std::optional<Outgoing> Lane::take() {
-  if (waiting_.empty()) return std::nullopt;
-  Outgoing message = std::move(waiting_.front());
-  waiting_.pop_front();
-  if (message.seq != 0) {
-    unacknowledged_.push_back(message);
-    last_given_out_ = std::max(last_given_out_, message.seq);
+const Outgoing* Lane::take() {
+  if (waiting_.empty()) return nullptr;
+  Outgoing& next = waiting_.front();
+  const bool kept = next.seq != 0;
+  if (kept) {
+    last_given_out_ = std::max(last_given_out_, next.seq);
+    unacknowledged_.push_back(std::move(next));
+  } else {
+    passing_ = std::move(next);
   }
-  return message;
+  waiting_.pop_front();
+  return kept ? &unacknowledged_.back() : &passing_;
 }
 
 bool Lane::acknowledge(std::uint64_t seq) {

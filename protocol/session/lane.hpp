@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
-#include <optional>
 
 #include "protocol/codec/bytes.hpp"
 #include "protocol/vocabulary/message.hpp"
@@ -25,11 +24,13 @@ class Lane {
 
   void set_lockstep(bool lockstep) { lockstep_ = lockstep; }
 
+  bool keeps(MessageType type) const;
+
   // Kept messages are numbered; of the others the newest few stay.
   void push(Outgoing message);
 
-  // The next one to go out on the current connection.
-  std::optional<Outgoing> take();
+  // The next one to go out on the current connection, valid until another one is taken or acknowledged; null: none.
+  const Outgoing* take();
 
   // The other side has everything up to and with `seq`. False: it names a message that was never sent.
   bool acknowledge(std::uint64_t seq);
@@ -50,12 +51,12 @@ class Lane {
   bool overflowed() const;
 
  private:
-  bool keeps(MessageType type) const;
   void drop_oldest_like(const Outgoing& message);
 
   bool lockstep_ = false;
   std::deque<Outgoing> waiting_;
   std::deque<Outgoing> unacknowledged_;  // kept and already given out, in order
+  Outgoing passing_;                     // the last one given out that is not kept
   std::uint64_t next_seq_ = 1;
   std::uint64_t last_given_out_ = 0;
   std::uint64_t last_received_ = 0;

@@ -9,12 +9,12 @@ namespace {
 
 using Handle = std::unique_ptr<void, int (*)(tjhandle)>;
 
-Result<VideoFrame> compress(const VideoFrame& frame) {
+Result<VideoFrame> compress(const VideoFrame& frame, int quality) {
   const Handle handle(tjInitCompress(), tjDestroy);
   unsigned char* bytes = nullptr;
   unsigned long size = 0;
   const int done = tjCompress2(handle.get(), frame.bytes.data(), frame.width, static_cast<int>(frame.stride),
-                               frame.height, TJPF_BGR, &bytes, &size, TJSAMP_420, kJpegQuality, TJFLAG_FASTDCT);
+                               frame.height, TJPF_BGR, &bytes, &size, TJSAMP_420, quality, TJFLAG_FASTDCT);
   const std::unique_ptr<unsigned char, void (*)(unsigned char*)> owner(bytes, tjFree);
   if (done != 0)
     return failure(ErrorCode::internal, std::string("a picture cannot be compressed: ") + tjGetErrorStr2(handle.get()));
@@ -51,9 +51,9 @@ Result<VideoFrame> expand(const VideoFrame& frame) {
 
 }  // namespace
 
-Result<VideoFrame> convert(const VideoFrame& frame, PixelCodec codec) {
+Result<VideoFrame> convert(const VideoFrame& frame, PixelCodec codec, int quality) {
   if (frame.codec == codec) return frame;
-  return codec == PixelCodec::jpeg ? compress(frame) : expand(frame);
+  return codec == PixelCodec::jpeg ? compress(frame, quality) : expand(frame);
 }
 
 }  // namespace counterpart

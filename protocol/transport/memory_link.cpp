@@ -124,7 +124,7 @@ class MemoryEndpoint : public Endpoint {
   MemoryEndpoint& operator=(const MemoryEndpoint&) = delete;
 
   void send(PeerId peer, const Message& message) override {
-    const auto outgoing = make_outgoing(message, options_.video_codec.value_or(PixelCodec::raw_bgr8));
+    const auto outgoing = make_outgoing(message, {options_.video_codec.value_or(PixelCodec::raw_bgr8)});
     const std::lock_guard lock(pipe_->mutex);
     if (outgoing) {
       hub_.send(peer, *outgoing, monotonic_ns());
@@ -135,7 +135,7 @@ class MemoryEndpoint : public Endpoint {
   }
 
   void broadcast(const Message& message) override {
-    const auto outgoing = make_outgoing(message, options_.video_codec.value_or(PixelCodec::raw_bgr8));
+    const auto outgoing = make_outgoing(message, {options_.video_codec.value_or(PixelCodec::raw_bgr8)});
     const std::lock_guard lock(pipe_->mutex);
     if (outgoing) {
       hub_.broadcast(*outgoing, monotonic_ns());

@@ -4,13 +4,14 @@
 #include <memory>
 
 #include "protocol/session/lane.hpp"
+#include "protocol/transport/video_choice.hpp"
 #include "protocol/vocabulary/message.hpp"
 #include "protocol/vocabulary/result.hpp"
 
 namespace counterpart {
 
-// Raw pictures are turned into `codec` first. The body goes into `memory`, which nobody else may be using.
-[[nodiscard]] Result<Outgoing> make_outgoing(const Message& message, PixelCodec codec,
+// Raw pictures are given this form first. The body goes into `memory`, which nobody else may be using.
+[[nodiscard]] Result<Outgoing> make_outgoing(const Message& message, const VideoForm& form,
                                              std::shared_ptr<Bytes> memory = std::make_shared<Bytes>());
 
 }  // namespace counterpart

@@ -6,9 +6,13 @@
 #include <thread>
 
 #include <boost/asio.hpp>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
 
 #include "protocol/capture/recorder.hpp"
 #include "protocol/session/hub.hpp"
+#include "protocol/session/rate_limit.hpp"
 #include "protocol/transport/address.hpp"
 #include "protocol/transport/body_pool.hpp"
 #include "protocol/transport/delivery_rate.hpp"
@@ -30,10 +34,25 @@ using asio::ip::tcp;
 using boost::system::error_code;
 
 constexpr auto kGoodbyeLimit = std::chrono::milliseconds(300);
-constexpr std::size_t kPosesReused = 1024;  // whose memory is used again
+constexpr std::size_t kPosesReused = 16384;  // whose memory is used again
 constexpr std::size_t kPicturesReused = 4;
 constexpr std::int64_t kLease = 5'000'000;
 constexpr std::int64_t kLongestPatience = 1'000'000'000'000'000;  // eleven days; more would not fit
+
+// Messages of one connection that follow each other faster than this, for longer than this, are a flood. A game's never
+// come near it.
+constexpr std::int64_t kFloodPerSecond = 100'000;
+constexpr std::int64_t kFloodBegins = 64;
+constexpr int kMostHeld = 32;                                  // messages of a flood that one write carries
+constexpr auto kLongestHeld = std::chrono::microseconds(200);  // where no more follow
+
+// What the system may hold of a link to another host beyond what is under way: where it holds seconds of pictures, no
+// newer one can replace them.
+constexpr int kMostUnsent = 128 << 10;
+
+void limit_unsent(int socket) {
+  static_cast<void>(::setsockopt(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kMostUnsent, sizeof kMostUnsent));
+}
 
 // What the options name, read and opened.
 struct Prepared {
@@ -63,6 +82,8 @@ struct Watch {
   asio::posix::stream_descriptor descriptor;
   std::uint64_t round = 0;  // waits of an earlier round no longer count
   bool reading = false, writing = false;
+  RateLimit pace{kFloodPerSecond, kFloodBegins};  // of what is sent
+  int held = 0;                                   // messages of a flood that wait to be written together
 };
 
 // Sockets are touched only with the mutex held; handlers run on the endpoint's own thread.
@@ -77,6 +98,7 @@ class TcpEndpoint : public Endpoint {
         acceptor_(io_),
         timer_(io_),
         lease_timer_(io_),
+        holding_timer_(io_),
         work_(asio::make_work_guard(io_)) {}
 
   ~TcpEndpoint() override {
@@ -135,19 +157,23 @@ class TcpEndpoint : public Endpoint {
   }
 
   void send(PeerId peer, const Message& message) override {
-    auto outgoing = make_outgoing(message, codec_for(message), memory_for(message));
-    const std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_);
+    auto outgoing = prepare(message, lock);
     if (!outgoing) return refuse(peer, outgoing.error());
     const std::int64_t now_ns = monotonic_ns();
-    hub_.send(peer, *outgoing, now_ns);
-    const auto carrier = find(hub_.carrier(peer, outgoing->type));
-    if (carrier != nullptr && is_over_after_writing(carrier, now_ns)) return after_change();
+    const MessageType type = outgoing->type;
+    hub_.send(peer, std::move(*outgoing), now_ns);
+    const auto& carrier = find(hub_.carrier(peer, type));
+    if (carrier != nullptr && !(hub_.keeps(peer, type) && holds_back(*carrier, now_ns)) &&
+        is_over_after_writing(carrier, now_ns)) {
+      return after_change();
+    }
     if (changed()) after_change();
   }
 
   void broadcast(const Message& message) override {
-    auto outgoing = make_outgoing(message, codec_for(message), memory_for(message));
-    const std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_);
+    auto outgoing = prepare(message, lock);
     if (!outgoing) return refuse(0, outgoing.error());
     const std::int64_t now_ns = monotonic_ns();
     hub_.broadcast(*outgoing, now_ns);
@@ -157,6 +183,7 @@ class TcpEndpoint : public Endpoint {
   // A program that waits here reads the sockets itself: a message then costs one wake-up less.
   std::vector<Inbound> receive(std::int64_t timeout_ns) override {
     std::unique_lock lock(mutex_);
+    if (held_) after_change();  // a program that comes here has no more to send for now
     std::int64_t now_ns = monotonic_ns();
     const std::int64_t deadline_ns = now_ns + std::min(timeout_ns, kLongestPatience);
     while (!hub_.has_inbound() && now_ns < deadline_ns) now_ns = read_in_place(lock, now_ns, deadline_ns);
@@ -179,23 +206,32 @@ class TcpEndpoint : public Endpoint {
     after_change();
   }
 
+  // --- everything below is called with the mutex held ---
+
+  // A message as it waits to be sent. What takes a while to turn into bytes keeps nobody waiting.
+  Result<Outgoing> prepare(const Message& message, std::unique_lock<std::mutex>& lock) {
+    const bool at_once = std::holds_alternative<PoseEstimate>(message);
+    const VideoForm form = form_for(message);
+    auto memory = memory_for(message);
+    if (!at_once) lock.unlock();
+    auto outgoing = make_outgoing(message, form, std::move(memory));
+    if (!at_once) lock.lock();
+    return outgoing;
+  }
+
   std::shared_ptr<Bytes> memory_for(const Message& message) {
-    const std::lock_guard lock(mutex_);
     if (std::holds_alternative<PoseEstimate>(message)) return poses_.take();
     if (std::holds_alternative<VideoFrame>(message)) return pictures_.take();
     return std::make_shared<Bytes>();
   }
 
-  PixelCodec codec_for(const Message& message) {
+  VideoForm form_for(const Message& message) {
     const auto* picture = std::get_if<VideoFrame>(&message);
-    if (options_.video_codec || picture == nullptr) return options_.video_codec.value_or(PixelCodec::raw_bgr8);
-    const std::lock_guard lock(mutex_);
+    if (options_.video_codec || picture == nullptr) return {options_.video_codec.value_or(PixelCodec::raw_bgr8)};
     VideoLinks links = video_links();
     if (options_.lockstep) links.slowest_bytes_per_second = 0;  // two runs must give the same bytes
     return video_choice_.choose(picture->bytes.size(), links, monotonic_ns());
   }
-
-  // --- everything below is called with the mutex held ---
 
   VideoLinks video_links() const {
     VideoLinks all;
@@ -244,6 +280,7 @@ class TcpEndpoint : public Endpoint {
     socket.set_option(tcp::no_delay(true), ignored);
     const bool local = socket.remote_endpoint(ignored).address().is_loopback();
     const int connected = socket.release(ignored);
+    if (!local) limit_unsent(connected);
     links_.push_back(std::make_shared<Watch>(io_, connected, id, tls_over(connected), local));
     after_change();
   }
@@ -269,17 +306,40 @@ class TcpEndpoint : public Endpoint {
   }
 
   // Ids grow, so the links lie in their order. Null: it is gone.
-  std::shared_ptr<Watch> find(ConnectionId id) const {
+  const std::shared_ptr<Watch>& find(ConnectionId id) const {
+    static const std::shared_ptr<Watch> nobody;
     const auto found = std::lower_bound(links_.begin(), links_.end(), id,
                                         [](const auto& watched, ConnectionId one) { return watched->link.id() < one; });
-    return found != links_.end() && (*found)->link.id() == id ? *found : nullptr;
+    return found != links_.end() && (*found)->link.id() == id ? *found : nobody;
   }
 
   // Connections or sessions came, went or changed since after_change.
   bool changed() const { return hub_.changes() != changes_seen_; }
 
+  // Of a flood, several messages are written at a time: a system call costs more than all the rest of a small message.
+  // Every other message is written when it is sent, and so is what a newer one might push out while it waits.
+  bool holds_back(Watch& watched, std::int64_t now_ns) {
+    const bool flood = watched.pace.count(now_ns) > now_ns;
+    if (!flood || ++watched.held >= kMostHeld) return false;
+    if (!held_) write_held_soon();
+    return true;
+  }
+
+  void write_held_soon() {
+    held_ = true;
+    if (holding_ends_) return;
+    holding_ends_ = true;
+    holding_timer_.expires_after(kLongestHeld);
+    holding_timer_.async_wait([this](const error_code& cancelled) {
+      if (cancelled) return;
+      const std::lock_guard lock(mutex_);
+      holding_ends_ = false;
+      if (held_) after_change();
+    });
+  }
+
   bool is_over_after_writing(const std::shared_ptr<Watch>& watched, std::int64_t now_ns) {
-    watched->link.flush(hub_, now_ns);
+    write(*watched, now_ns);
     if (watched->link.blocked()) watch(watched, now_ns);
     return is_over(watched->link, now_ns);
   }
@@ -308,10 +368,10 @@ class TcpEndpoint : public Endpoint {
     take_lease(now_ns);
     bool over = false;
     for (const SocketSet::Ready& one : ready) {
-      const auto watched = find(one.id);
+      const auto& watched = find(one.id);
       if (watched == nullptr) continue;
       if (one.write) watched->link.unblock();
-      if (one.read) watched->link.read(hub_);
+      if (one.read) watched->link.read(hub_, now_ns);
       over = is_over_after_writing(watched, now_ns) || over;
       set_alarm(hub_.next_tick(one.id, now_ns));
     }
@@ -338,15 +398,21 @@ class TcpEndpoint : public Endpoint {
     });
   }
 
+  void write(Watch& watched, std::int64_t now_ns) {
+    watched.held = 0;
+    watched.link.flush(hub_, now_ns);
+  }
+
   // Whatever happened: write what can be written, read what may be read, close what is over, set the alarm clock.
   void after_change() {
     const std::int64_t now_ns = monotonic_ns();
     if (!leaving_) {
       while (const auto lane = hub_.wants_to_dial(now_ns)) dial(*lane);
     }
+    held_ = false;
     std::vector<std::shared_ptr<Watch>> over;
     for (const auto& watched : links_) {
-      watched->link.flush(hub_, now_ns);
+      write(*watched, now_ns);
       watch(watched, now_ns);
       if (is_over(watched->link, now_ns)) over.push_back(watched);
     }
@@ -394,7 +460,7 @@ class TcpEndpoint : public Endpoint {
     if (!watched->reading && !leased(now_ns) && hub_.wants_read(link.id())) {
       wait_until(asio::posix::stream_descriptor::wait_read, watched, watched->reading,
                  [this, watched](std::int64_t then) {
-                   if (!leased(then)) watched->link.read(hub_);
+                   if (!leased(then)) watched->link.read(hub_, then);
                  });
     }
   }
@@ -417,7 +483,9 @@ class TcpEndpoint : public Endpoint {
 
   // Broken, or it has said all.
   bool is_over(const TcpLink& link, std::int64_t now_ns) const {
-    return link.broken() || (hub_.finished(link.id()) && !link.writing()) || hub_.overdue(link.id(), now_ns);
+    if (link.broken()) return true;
+    if (hub_.listens(link.id())) return false;
+    return (hub_.finished(link.id()) && !link.writing()) || hub_.overdue(link.id(), now_ns);
   }
 
   void reap(const std::shared_ptr<Watch>& watched, std::int64_t now_ns) {
@@ -443,13 +511,15 @@ class TcpEndpoint : public Endpoint {
   SocketSet sockets_;
   bool polling_ = false;       // the program's thread waits on the sockets
   bool lease_ending_ = false;  // lease_timer_ runs
+  bool held_ = false;          // messages of a flood may be waiting
+  bool holding_ends_ = false;  // holding_timer_ runs
   std::int64_t lease_ns_ = 0;
   std::uint64_t changes_seen_ = 0;  // of hub_.changes()
   bool alarm_set_ = false;
   std::int64_t alarm_ns_ = 0;
   asio::io_context io_;
   tcp::acceptor acceptor_;
-  asio::steady_timer timer_, lease_timer_;
+  asio::steady_timer timer_, lease_timer_, holding_timer_;
   asio::executor_work_guard<asio::io_context::executor_type> work_;
   std::vector<std::shared_ptr<Watch>> links_;  // by id
   std::thread thread_;

@@ -37,14 +37,14 @@ ssize_t TcpLink::read_some(std::span<std::uint8_t> room) {
   return tls_ ? tls_->read(room) : ::recv(socket_, room.data(), room.size(), MSG_DONTWAIT);
 }
 
-void TcpLink::read(Hub& hub) {
+void TcpLink::read(Hub& hub, std::int64_t now_ns) {
   for (int rounds = 0; reads_on(hub, rounds); ++rounds) {
     const auto room = hub.parser(id_).room();
     const ssize_t count = read_some(room);
     if (count == 0) broken_ = boost::asio::error::eof;
     if (count < 0 && errno != EAGAIN && errno != EINTR) broken_ = last_system_error();
     if (count <= 0) return;
-    hub.read(id_, static_cast<std::size_t>(count), monotonic_ns());
+    hub.read(id_, static_cast<std::size_t>(count), rounds == 0 ? now_ns : monotonic_ns());
     if (!tls_ && static_cast<std::size_t>(count) < room.size()) return;  // the socket is empty
   }
 }

@@ -34,7 +34,7 @@ class TcpLink {
   std::optional<Error> tls_error() const { return tls_ ? tls_->error() : std::nullopt; }
 
   // Gives the hub what has come, until nothing more is there or it wants no more.
-  void read(Hub& hub);
+  void read(Hub& hub, std::int64_t now_ns);
 
   // Writes what the hub has for it, until there is nothing more or the socket takes no more.
   void flush(Hub& hub, std::int64_t now_ns);

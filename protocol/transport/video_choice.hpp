@@ -1,9 +1,11 @@
-// Raw pictures or JPEG, by what the links to the viewers carry. Raw costs no time and no quality, but a picture of
-// 720x576 at 25 a second is 31 MB/s.
+// Raw pictures, good JPEG or smaller JPEG, by what the links to the viewers carry. Raw costs no time and no quality,
+// but a picture of 720x576 at 25 a second is 31 MB/s.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
+#include "protocol/transport/jpeg.hpp"
 #include "protocol/vocabulary/video.hpp"
 
 namespace counterpart {
@@ -15,18 +17,28 @@ struct VideoLinks {
   std::uint64_t dropped = 0;            // pictures so far that newer ones pushed out
 };
 
+// What a raw picture is turned into.
+struct VideoForm {
+  PixelCodec codec = PixelCodec::raw_bgr8;
+  int quality = kJpegQuality;  // of a JPEG
+};
+
 class VideoChoice {
  public:
   // For the next raw picture, of so many bytes.
-  PixelCodec choose(std::size_t picture_bytes, const VideoLinks& links, std::int64_t now_ns);
+  VideoForm choose(std::size_t picture_bytes, const VideoLinks& links, std::int64_t now_ns);
 
  private:
-  PixelCodec codec_ = PixelCodec::jpeg;
+  double needed_bytes_per_second(std::size_t picture_bytes, std::int64_t now_ns);
+  void do_with_less(std::int64_t now_ns);
+
+  std::size_t step_ = 1;   // in the list of forms, the best one first
   double interval_s_ = 0;  // from picture to picture, smoothed; 0: not known
   std::int64_t last_ns_ = 0;
   std::uint64_t dropped_ = 0;
-  std::int64_t doubt_ns_ = 0;  // between leaving raw and trying it again; longer each time
-  std::int64_t not_raw_before_ns_ = 0;
+  bool tried_more_ = true;     // since it last had to do with less
+  std::int64_t doubt_ns_ = 0;  // before more is tried; longer each time that it was too much
+  std::int64_t not_more_before_ns_ = 0, not_less_before_ns_ = 0;
 };
 
 }  // namespace counterpart

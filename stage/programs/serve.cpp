@@ -151,6 +151,7 @@ Result<void> run_serve(const ServeOptions& options, const std::function<bool()>&
   link.software = std::string("stage ") + COUNTERPART_VERSION;
   link.lockstep = options.lockstep;
   link.token_file = options.token_file;
+  link.tls_file = options.tls_file;
   Result<std::unique_ptr<Endpoint>> endpoint = listen_tcp(options.listen, link);
   if (!endpoint) return tl::make_unexpected(endpoint.error());
   spdlog::info("a camera at vhp://{}", (*endpoint)->address());

@@ -17,7 +17,7 @@ struct ServeOptions {
   std::string scenario;
   std::uint64_t frames = 0;
   std::string truth;
-  std::string token_file;
+  std::string token_file, tls_file;
   std::optional<std::uint64_t> seed;
   bool lockstep = false;
 };

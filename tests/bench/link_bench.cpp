@@ -1,5 +1,6 @@
 // Our link against the plainest thing that Boost.Asio can do: length-prefixed blocks, no checksum, no session, one
-// thread. Two processes over loopback, interleaved rounds; medians of the rounds, and of the ratios within a round.
+// thread. Two processes over loopback, each on a core of its own: where the system moves them about, a ping-pong takes
+// one time on one core and another on two. Interleaved rounds; medians of the rounds, and of the ratios within a round.
 //   link_bench [ROUNDS] [ping_pong|small|frames]
 #include <algorithm>
 #include <chrono>
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include <boost/asio.hpp>
+#include <sched.h>
 #include <unistd.h>
 
 #include "protocol/daemon/picture_memory.hpp"
@@ -28,6 +30,14 @@ using asio::ip::tcp;
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::uint32_t kEcho = 1, kData = 2, kEnd = 3;
+
+// The child and the parent get different cores if there are two.
+void stay_on_core(unsigned core) {
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  CPU_SET(core % std::max(1U, std::thread::hardware_concurrency()), &cores);
+  static_cast<void>(sched_setaffinity(0, sizeof cores, &cores));
+}
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -244,6 +254,7 @@ int main(int argc, char** argv) {
   int ports[2];
   if (pipe(ports) != 0) return 1;
   const pid_t child = fork();
+  stay_on_core(child == 0 ? 1 : 0);
   if (child == 0) {
     asio::io_context io;
     tcp::acceptor acceptor(io, {asio::ip::address_v4::loopback(), 0});

@@ -3,29 +3,17 @@
 #include <fstream>
 #include <sstream>
 #include <string>
-#include <vector>
 
-#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "tests/protocol/robustness/scale.hpp"
 #include "tests/support/network.hpp"
-#include "tests/support/program.hpp"
-#include "tests/support/two_name_spaces.hpp"
+#include "tests/support/on_two_hosts.hpp"
 
 namespace counterpart {
 namespace {
 
-using testing_support::free_address;
-using testing_support::ip;
-using testing_support::Outcome;
-using testing_support::Program;
-using testing_support::run;
-using testing_support::TemporaryFolder;
-using testing_support::TwoNameSpaces;
-
-using std::chrono::seconds;
-using Words = std::vector<std::string>;
+using namespace testing_support;
 
 // He walks in, sits down and the first moves of both sides are made; a whole game ends by itself before the second.
 constexpr int kShort = 260, kWhole = 40'000;
@@ -49,17 +37,14 @@ Words said(const std::string& capture, const std::string& type) {
   return bodies;
 }
 
-class ReplayedSession : public testing::Test {
+class ReplayedSession : public OnTwoHosts {
  protected:
   void SetUp() override {
-    if (!hosts_.why_not().empty()) GTEST_SKIP() << hosts_.why_not();
-    for (const auto& [name, text] : {std::pair{"token", "0123456789abcdef0123456789abcdef\n"},
-                                     std::pair{"small.json", R"({"name": "small", "seed": 3, "frames": 100000,
-                                       "camera": {"width": 360, "height": 288, "focal_px": 305},
-                                       "player": {"speed": 1.5}})"}}) {
-      std::ofstream(folder_.path(name)) << text;
-      std::filesystem::permissions(folder_.path(name), std::filesystem::perms::owner_read);
-    }
+    OnTwoHosts::SetUp();
+    if (IsSkipped()) return;
+    write_private("small.json", R"({"name": "small", "seed": 3, "frames": 100000,
+                                    "camera": {"width": 360, "height": 288, "focal_px": 305},
+                                    "player": {"speed": 1.5}})");
     for (const Words& words : {Words{"link", "add", "far0", "netns", hosts_.tracker_host(), "type", "veth", "peer",
                                      "name", "far0", "netns", hosts_.renderer_host()},
                                Words{"-n", hosts_.tracker_host(), "address", "add", "10.99.8.1/24", "dev", "far0"},
@@ -75,19 +60,19 @@ class ReplayedSession : public testing::Test {
 
   // Stage and tracker on one host, the renderer on the other.
   void play() const {
-    const std::string token = folder_.path("token"), link = "10.99.8.1:7401", camera = "127.0.0.1:7403";
+    const std::string link = "10.99.8.1:7401", camera = "127.0.0.1:7403";
     Program stage("/sbin/ip", TwoNameSpaces::on(hosts_.tracker_host(), "stage",
                                                 {"serve", "--listen", camera, "--lockstep", "--scenario",
-                                                 folder_.path("small.json")}));
+                                                 folder_.path("small.json"), "--token-file", token()}));
     ASSERT_TRUE(stage.wait_for_stderr("vhp://", seconds(60))) << stage.stderr_text();
-    Program tracker("/sbin/ip",
-                    TwoNameSpaces::on(hosts_.tracker_host(), "tracker_server",
-                                      tracker_words("vhp://" + camera, link, "tracker.mcap", {"--token-file", token})));
+    Program tracker("/sbin/ip", TwoNameSpaces::on(
+                                    hosts_.tracker_host(), "tracker_server",
+                                    tracker_words("vhp://" + camera, link, "tracker.mcap", {"--token-file", token()})));
     Program renderer(
         "/sbin/ip",
         TwoNameSpaces::on(
             hosts_.renderer_host(), "vhd_renderer",
-            renderer_words(link, "film.mp4", {"--token-file", token, "--record", folder_.path("renderer.mcap")})));
+            renderer_words(link, "film.mp4", {"--token-file", token(), "--record", folder_.path("renderer.mcap")})));
     ASSERT_EQ(tracker.wait(kPatience), 0) << tracker.stderr_text() << renderer.stderr_text();
     ASSERT_EQ(renderer.wait(seconds(60)), 0) << renderer.stderr_text();
   }
@@ -111,9 +96,6 @@ class ReplayedSession : public testing::Test {
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }
-
-  TemporaryFolder folder_;
-  const TwoNameSpaces hosts_;
 };
 
 TEST_F(ReplayedSession, MakesTheSameFilmAndTheSameCommandsAgain) {

@@ -36,14 +36,21 @@ class Camera {
 
   virtual std::uint64_t dropped() const { return 0; }
 
-  // For a camera host that plays along (the stage, a capture being replayed): this frame has been composited, the next one may
-  // come; and what is shown in the mirror (events, board states). Other cameras do not listen.
+  // For a camera host that plays along (the stage, a capture being replayed): this frame has been composited, the next
+  // one may come; and what is shown in the mirror (events, board states). Other cameras do not listen.
   virtual void done(const FrameStamp& /*stamp*/) {}
   virtual void tell(const Message& /*message*/) {}
 };
 
-// uri: /dev/videoN, a video file, a folder of pictures (name order; camera.json beside them is read), rtsp:// or
-// http://. Names missing files and devices, and what could be opened instead.
-[[nodiscard]] Result<std::unique_ptr<Camera>> open_camera(const std::string& uri, Pace pace);
+// What opens a camera host (vhp://): the files that it was started with, too. Other cameras need nothing.
+struct CameraAccess {
+  std::string token_file;
+  std::string tls_file;
+};
+
+// uri: /dev/videoN, a video file, a folder of pictures (name order; camera.json beside them is read), rtsp://, http://
+// or vhp://. Names missing files and devices, and what could be opened instead.
+[[nodiscard]] Result<std::unique_ptr<Camera>> open_camera(const std::string& uri, Pace pace,
+                                                          const CameraAccess& access = {});
 
 }  // namespace counterpart

@@ -32,9 +32,9 @@ Result<std::unique_ptr<Camera>> open_source(const std::string& uri) {
 
 }  // namespace
 
-Result<std::unique_ptr<Camera>> open_camera(const std::string& uri, Pace pace) {
+Result<std::unique_ptr<Camera>> open_camera(const std::string& uri, Pace pace, const CameraAccess& access) {
   constexpr std::int64_t kPatienceNs = 10'000'000'000;  // a camera host that is just starting gets this long
-  if (starts_with_any(uri, {"vhp://"})) return open_vhp_camera(uri.substr(6), pace, kPatienceNs);
+  if (starts_with_any(uri, {"vhp://"})) return open_vhp_camera(uri.substr(6), pace, access, kPatienceNs);
   auto source = open_source(uri);
   if (!source || pace == Pace::lockstep) return source;
   return newest_wins(std::move(*source));

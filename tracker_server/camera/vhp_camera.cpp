@@ -51,7 +51,7 @@ class VhpCamera final : public Camera {
         waiting_.push_back(std::move(*video));
       } else if (const auto* intrinsics = std::get_if<Intrinsics>(&received->message)) {
         intrinsics_ = *intrinsics;
-            }
+      }
     }
   }
 
@@ -77,11 +77,14 @@ std::unique_ptr<Camera> make_vhp_camera(std::unique_ptr<Endpoint> link, Pace pac
   return std::make_unique<VhpCamera>(std::move(link), pace);
 }
 
-Result<std::unique_ptr<Camera>> open_vhp_camera(const std::string& host_port, Pace pace, std::int64_t wait_ns) {
+Result<std::unique_ptr<Camera>> open_vhp_camera(const std::string& host_port, Pace pace, const CameraAccess& access,
+                                                std::int64_t wait_ns) {
   LinkOptions options;
   options.role = Role::tracker;
   options.software = "tracker_server " COUNTERPART_VERSION;
   options.lockstep = pace == Pace::lockstep;
+  options.token_file = access.token_file;
+  options.tls_file = access.tls_file;
   auto link = connect_tcp(host_port, options, wait_ns);
   if (!link) return tl::make_unexpected(link.error());
   return make_vhp_camera(std::move(*link), pace);

@@ -15,7 +15,7 @@ class Endpoint;
 // host_port: "127.0.0.1:7403". Waits wait_ns for the camera host to answer. Survives a lost link: frames go on when the
 // host is back. Ends when the host says BYE.
 [[nodiscard]] Result<std::unique_ptr<Camera>> open_vhp_camera(const std::string& host_port, Pace pace,
-                                                              std::int64_t wait_ns);
+                                                              const CameraAccess& access, std::int64_t wait_ns);
 
 // The same over any link, for tests.
 [[nodiscard]] std::unique_ptr<Camera> make_vhp_camera(std::unique_ptr<Endpoint> link, Pace pace);

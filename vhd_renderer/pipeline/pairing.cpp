@@ -7,10 +7,13 @@
 namespace counterpart {
 namespace {
 
-// Frames whose other half is still on its way. Two in real time: more is delay. In lockstep one is in work at a time;
-// the bound only stops a peer that never pairs.
-constexpr std::size_t kWaitingNewest = 3;
+// Pictures whose pose is still on its way: in real time more would be delay. In lockstep one is in work at a time; the
+// bound only stops a peer that never pairs.
+constexpr std::size_t kPicturesNewest = 3;
 constexpr std::size_t kWaitingEvery = 256;
+
+// Poses go ahead of their pictures on a slow link: two and a half seconds at 25 a second.
+constexpr std::size_t kWaitingNewest = 64;
 
 }  // namespace
 
@@ -36,9 +39,12 @@ void Pairing::add(Mask mask) {
 }
 
 void Pairing::bound() {
-  const std::size_t most = policy_ == PairingPolicy::newest ? kWaitingNewest : kWaitingEvery;
-  while (waiting_.size() > most) {
-    dropped_ += waiting_.begin()->second.video ? 1 : 0;
+  const bool newest = policy_ == PairingPolicy::newest;
+  auto pictures = static_cast<std::size_t>(std::count_if(waiting_.begin(), waiting_.end(), has_picture));
+  while (waiting_.size() > (newest ? kWaitingNewest : kWaitingEvery) || (newest && pictures > kPicturesNewest)) {
+    const bool picture = has_picture(*waiting_.begin());
+    pictures -= picture ? 1 : 0;
+    dropped_ += picture ? 1 : 0;
     waiting_.erase(waiting_.begin());
   }
 }
@@ -55,8 +61,7 @@ std::optional<PairedFrame> Pairing::take() {
   if (found == waiting_.end()) return std::nullopt;
   PairedFrame pair{std::move(*found->second.video), *found->second.pose, std::move(found->second.mask)};
   taken_ = found->first;
-  dropped_ += static_cast<std::uint64_t>(
-      std::count_if(waiting_.begin(), found, [](const auto& entry) { return entry.second.video.has_value(); }));
+  dropped_ += static_cast<std::uint64_t>(std::count_if(waiting_.begin(), found, has_picture));
   waiting_.erase(waiting_.begin(), std::next(found));
   return pair;
 }

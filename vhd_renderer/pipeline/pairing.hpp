@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "protocol/vocabulary/pose.hpp"
 #include "protocol/vocabulary/video.hpp"
@@ -45,6 +46,8 @@ class Pairing {
     std::optional<Mask> mask;
     bool complete() const { return video.has_value() && pose.has_value(); }
   };
+
+  static bool has_picture(const std::pair<const FrameId, Half>& entry) { return entry.second.video.has_value(); }
 
   Half* half(FrameId frame);
   void bound();

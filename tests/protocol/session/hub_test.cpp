@@ -60,7 +60,7 @@ class World {
     wires.clear();
   }
 
-  void send(Hub& hub, const Message& message) { hub.broadcast(*make_outgoing(message, PixelCodec::raw_bgr8), now); }
+  void send(Hub& hub, const Message& message) { hub.broadcast(*make_outgoing(message, {}), now); }
 
   template <class T>
   std::vector<T> received(Hub& hub) {
@@ -360,7 +360,7 @@ TEST(Hub, ASessionEndsWhenTooMuchWaitsForAPeerThatIsAway) {
   world.run(5);
   world.connected = false;
   world.cut();
-  const auto outgoing = *make_outgoing(command(1), PixelCodec::raw_bgr8);
+  const auto outgoing = *make_outgoing(command(1), {});
   for (int i = 0; i < 70'000; ++i) world.server.broadcast(outgoing, world.now);
   world.received<Feedback>(world.server);
   EXPECT_EQ(world.last_left.code, ErrorCode::limit_exceeded);

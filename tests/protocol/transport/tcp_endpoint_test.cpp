@@ -226,6 +226,20 @@ TEST(TcpEndpoint, TurnsPicturesIntoJpegWhenAsked) {
   for (const std::uint8_t value : raw->bytes) ASSERT_NEAR(value, 200, 3);
 }
 
+// The end of a flood must come although the sender does nothing more.
+TEST(TcpEndpoint, AFloodArrivesWholeAndInOrder) {
+  auto camera = listen_tcp("127.0.0.1:0", options_of(Role::camera));
+  auto tracker = connect_tcp((*camera)->address(), options_of(Role::tracker), 2 * kSecond);
+  ASSERT_TRUE(tracker) << tracker.error().message;
+  const PeerId peer = joined(**tracker);
+  constexpr std::size_t kCount = 5'003;
+  for (FrameId frame = 1; frame <= kCount; ++frame) (*tracker)->send(peer, FrameDone{{frame, 0}});
+  const auto got =
+      messages<FrameDone>(collect(**camera, [](const auto& all) { return messages<FrameDone>(all).size() >= kCount; }));
+  ASSERT_EQ(got.size(), kCount);
+  for (std::size_t i = 0; i < kCount; ++i) ASSERT_EQ(got[i].stamp.frame_id, i + 1);
+}
+
 TEST(TcpEndpoint, WhatCannotBeSentComesBackAsAReport) {
   auto tracker = listen_tcp("127.0.0.1:0", options_of(Role::tracker));
   PoseEstimate pose;

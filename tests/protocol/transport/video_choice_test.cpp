@@ -1,5 +1,7 @@
 #include "protocol/transport/video_choice.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace counterpart {
@@ -12,7 +14,7 @@ constexpr double kMegabyte = 1e6;
 // What so many pictures later the newest goes out as.
 PixelCodec after(VideoChoice& choice, std::int64_t& now_ns, int pictures, const VideoLinks& links) {
   PixelCodec codec = PixelCodec::raw_bgr8;
-  for (int i = 0; i < pictures; ++i) codec = choice.choose(kPicture, links, now_ns += kFrameNs);
+  for (int i = 0; i < pictures; ++i) codec = choice.choose(kPicture, links, now_ns += kFrameNs).codec;
   return codec;
 }
 
@@ -45,12 +47,36 @@ TEST(VideoChoice, ADroppedPictureEndsRawForAWhileThatGrows) {
   EXPECT_EQ(after(choice, now_ns, 2 * 25, links), PixelCodec::raw_bgr8);
 }
 
+// A line that carries so many bytes a second; a JPEG of quality 92 has 120 kB, and each step less two thirds of it.
+TEST(VideoChoice, PicturesBecomeSmallerUntilASlowLinkCarriesAllAndLargerWhenItIsBetter) {
+  VideoChoice choice;
+  std::int64_t now_ns = 0;
+  VideoLinks links{false, 0, 0};
+  const auto quality_after = [&](double megabytes_per_second, int seconds) {
+    int quality = 0;
+    double waiting = 0;  // bytes
+    for (int i = 0; i < 25 * seconds; ++i) {
+      quality = choice.choose(kPicture, links, now_ns += kFrameNs).quality;
+      const double size = quality > 90 ? 120e3 : quality > 80 ? 80e3 : quality > 60 ? 53e3 : quality > 40 ? 36e3 : 24e3;
+      waiting = std::max(0.0, waiting + size - megabytes_per_second * kMegabyte / 25);
+      if (waiting < 3 * size) continue;
+      waiting -= size;
+      ++links.dropped;
+    }
+    return quality;
+  };
+  EXPECT_EQ(quality_after(5, 10), kJpegQuality) << "40 Mbit/s carry 25 of 120 kB";
+  EXPECT_EQ(quality_after(1, 8), 50) << "8 Mbit/s carry 25 of 36 kB";
+  EXPECT_GE(quality_after(1, 300), 50) << "what was too much is tried seldom";
+  EXPECT_EQ(quality_after(5, 1200), kJpegQuality);
+}
+
 TEST(VideoChoice, FastSmallPicturesAreJudgedByWhatTheyNeed) {
   VideoChoice choice;
   std::int64_t now_ns = 0;
   const VideoLinks link{false, 50 * kMegabyte, 0};
   PixelCodec codec = PixelCodec::jpeg;
-  for (int i = 0; i < 100; ++i) codec = choice.choose(320 * 240 * 3, link, now_ns += kFrameNs);
+  for (int i = 0; i < 100; ++i) codec = choice.choose(320 * 240 * 3, link, now_ns += kFrameNs).codec;
   EXPECT_EQ(codec, PixelCodec::raw_bgr8) << "5.8 MB/s";
 }
 

@@ -1,6 +1,7 @@
 // A bad line between two network namespaces: IP packets go from a TUN device in one to a TUN device in the other, late,
 // lost or out of order, by seed. It stands in for tc netem, which many kernels are built without.
-//   impaired_link NAMESPACE NAMESPACE DELAY_MS JITTER_MS LOSS REORDER SEED     ends on SIGTERM
+//   impaired_link NAMESPACE NAMESPACE DELAY_MS JITTER_MS LOSS REORDER SEED MBIT_PER_S     ends on SIGTERM
+// MBIT_PER_S is what each way carries, behind a queue of 200 ms; 0: no limit.
 #include <array>
 #include <chrono>
 #include <csignal>
@@ -8,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <queue>
 #include <random>
 #include <string>
@@ -24,6 +26,7 @@
 namespace {
 
 constexpr std::size_t kMostWaiting = 5'000;
+constexpr double kLongestQueue_s = 0.2;
 
 volatile std::sig_atomic_t g_ending = 0;
 
@@ -61,14 +64,27 @@ struct Packet {
 
 struct Line {
   double delay_s = 0, jitter_s = 0, loss = 0, reorder = 0;
+  double bytes_per_s = 0;                 // 0: no limit
+  std::array<double, 2> free_at_s{0, 0};  // when each way has carried what is in its queue
   std::mt19937_64 random;
   std::uint64_t number = 0, lost = 0, early = 0;
 
   double chance() { return std::uniform_real_distribution<double>(0, 1)(random); }
 
-  void take(std::vector<char> bytes, std::priority_queue<Packet>& waiting) {
+  // How long a packet of this size waits for those before it and for itself; empty: the queue is full.
+  std::optional<double> queued_s(std::size_t size, std::size_t side) {
+    if (bytes_per_s == 0) return 0;
+    const double now = now_s(), begins = std::max(now, free_at_s[side]);
+    if (begins - now > kLongestQueue_s) return std::nullopt;
+    free_at_s[side] = begins + static_cast<double>(size) / bytes_per_s;
+    return free_at_s[side] - now;
+  }
+
+  void take(std::vector<char> bytes, std::priority_queue<Packet>& waiting, std::size_t side) {
     ++number;
-    if (chance() < loss || waiting.size() >= kMostWaiting) {
+    const bool gone = chance() < loss || waiting.size() >= kMostWaiting;
+    const auto in_queue_s = gone ? std::nullopt : queued_s(bytes.size(), side);
+    if (!in_queue_s) {
       ++lost;
       return;
     }
@@ -77,14 +93,14 @@ struct Line {
       delay = 0;  // overtakes those before it
       ++early;
     }
-    waiting.push({now_s() + delay, number, std::move(bytes)});
+    waiting.push({now_s() + *in_queue_s + delay, number, std::move(bytes)});
   }
 };
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 8) return 2;
+  if (argc != 9) return 2;
   std::signal(SIGTERM, [](int) { g_ending = 1; });
   const std::array<int, 2> tun{tun_in(argv[1]), tun_in(argv[2])};
   Line line;
@@ -92,6 +108,7 @@ int main(int argc, char** argv) {
   line.jitter_s = std::atof(argv[4]) / 1e3;
   line.loss = std::atof(argv[5]);
   line.reorder = std::atof(argv[6]);
+  line.bytes_per_s = std::atof(argv[8]) * 1e6 / 8;
   line.random.seed(std::strtoull(argv[7], nullptr, 10));
   std::fprintf(stderr, "ready\n");
   std::array<std::priority_queue<Packet>, 2> waiting;
@@ -105,7 +122,7 @@ int main(int argc, char** argv) {
     ::ppoll(waits.data(), waits.size(), &limit, nullptr);
     for (std::size_t side = 0; side < 2; ++side) {
       for (ssize_t count = 0; (count = ::read(tun[side], buffer.data(), buffer.size())) > 0;) {
-        line.take({buffer.begin(), buffer.begin() + count}, waiting[side]);
+        line.take({buffer.begin(), buffer.begin() + count}, waiting[side], side);
       }
       for (; !waiting[side].empty() && waiting[side].top().due_s <= now_s(); waiting[side].pop()) {
         const auto& bytes = waiting[side].top().bytes;

@@ -54,6 +54,23 @@ TEST(Pairing, NewestPairWinsAndTheOlderOnesAreCounted) {
   EXPECT_FALSE(pairing.take());
 }
 
+TEST(Pairing, APictureThatASlowLinkBringsHalfASecondLaterMeetsItsPose) {
+  Pairing pairing(PairingPolicy::newest);
+  constexpr FrameId kBehind = 12;
+  int shown = 0;
+  for (FrameId frame = 1; frame <= 100; ++frame) {
+    pairing.add(pose(frame));
+    if (frame <= kBehind || frame % 2 != 0) continue;  // it carries every second one
+    pairing.add(video(frame - kBehind));
+    const auto pair = pairing.take();
+    ASSERT_TRUE(pair) << "frame " << frame - kBehind;
+    expect_own_pose(*pair);
+    ++shown;
+  }
+  EXPECT_EQ(shown, 44);
+  EXPECT_EQ(pairing.dropped(), 0u);
+}
+
 TEST(Pairing, LockstepGivesEveryPairInOrder) {
   Pairing pairing(PairingPolicy::every);
   for (FrameId frame = 0; frame < 20; ++frame) pairing.add(video(frame));
