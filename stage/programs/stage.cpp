@@ -50,7 +50,7 @@ int main(int argc, char** argv) {
   serve_command->add_option("--scenario", serve.scenario, "JSON file; without it a game at a plain table");
   serve_command->add_option("--frames", serve.frames, "Stop after so many; 0: until stopped")->capture_default_str();
   serve_command->add_option("--truth", serve.truth, "Write a line of JSON a frame to this file");
-  serve_command->add_option("--token-file", serve.token_file, "Needed to listen on anything but loopback");
+  serve_command->add_option("--token-file,--token", serve.token_file, "Needed to listen on anything but loopback");
   serve_command->add_option("--tls-file", serve.tls_file, "TLS 1.3, with this file of vhp certificate");
   serve_command->add_option("--seed", serve.seed, "Instead of the scenario's");
   serve_command->add_flag("--lockstep", serve.lockstep, "Next frame only when the last one is done; no clock");

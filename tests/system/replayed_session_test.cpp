@@ -63,7 +63,7 @@ class ReplayedSession : public OnTwoHosts {
     const std::string link = "10.99.8.1:7401", camera = "127.0.0.1:7403";
     Program stage("/sbin/ip", TwoNameSpaces::on(hosts_.tracker_host(), "stage",
                                                 {"serve", "--listen", camera, "--lockstep", "--scenario",
-                                                 folder_.path("small.json"), "--token-file", token()}));
+                                                 folder_.path("small.json")}));
     ASSERT_TRUE(stage.wait_for_stderr("vhp://", seconds(60))) << stage.stderr_text();
     Program tracker("/sbin/ip", TwoNameSpaces::on(
                                     hosts_.tracker_host(), "tracker_server",

@@ -86,7 +86,12 @@ Result<std::unique_ptr<Camera>> open_vhp_camera(const std::string& host_port, Pa
   options.token_file = access.token_file;
   options.tls_file = access.tls_file;
   auto link = connect_tcp(host_port, options, wait_ns);
-  if (!link) return tl::make_unexpected(link.error());
+  if (!link) {
+    const bool lacks_file = link.error().message.find("-file") != std::string::npos;
+    return failure(link.error().code,
+                   "the camera vhp://" + host_port + ": " + link.error().message +
+                       (lacks_file ? " (for a camera: --camera-token-file, --camera-tls-file)" : ""));
+  }
   return make_vhp_camera(std::move(*link), pace);
 }
 

@@ -286,8 +286,8 @@ Result<void> serve(const ServeOptions& options) {
   if (!game) return tl::make_unexpected(game.error());
   auto opponent = make_opponent(options.opponent);
   if (!opponent) return tl::make_unexpected(opponent.error());
-  auto camera = open_camera(options.camera_uri, options.lockstep ? Pace::lockstep : Pace::realtime,
-                            {options.link.token_file, options.link.tls_file});
+  auto camera =
+      open_camera(options.camera_uri, options.lockstep ? Pace::lockstep : Pace::realtime, options.camera_access);
   if (!camera) return tl::make_unexpected(camera.error());
   return Server(options, std::move(*camera), std::move(*link), std::move(*game), std::move(*opponent)).run();
 }

@@ -8,6 +8,7 @@
 #include "game_controller/game/game.hpp"
 #include "protocol/transport/endpoint.hpp"
 #include "protocol/vocabulary/result.hpp"
+#include "tracker_server/camera/camera.hpp"
 #include "tracker_server/pipeline/observe.hpp"
 
 namespace counterpart {
@@ -19,6 +20,7 @@ enum class Activity {
 
 struct ServeOptions {
   std::string camera_uri;
+  CameraAccess camera_access;  // for a vhp:// camera
   std::string listen = "127.0.0.1:7401";
   LinkOptions link;
   ObserveOptions observe;

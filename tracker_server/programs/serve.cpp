@@ -94,10 +94,10 @@ void add_serve(CLI::App& app, int& exit_code) {
                    "/dev/videoN, film, folder of pictures, rtsp://, http:// or vhp://HOST:PORT")
       ->required();
   command->add_option("--listen", serve.listen, "HOST:PORT for renderers and tools")->capture_default_str();
-  command->add_option("--token-file", serve.link.token_file,
-                      "needed to listen on anything but loopback; a vhp:// camera must have it, too");
-  command->add_option("--tls-file", serve.link.tls_file,
-                      "TLS 1.3, with this file of vhp certificate; a vhp:// camera must speak it, too");
+  command->add_option("--token-file", serve.link.token_file, "needed to listen on anything but loopback");
+  command->add_option("--tls-file", serve.link.tls_file, "TLS 1.3, with this file of vhp certificate");
+  command->add_option("--camera-token-file", serve.camera_access.token_file, "that a vhp:// camera asks for");
+  command->add_option("--camera-tls-file", serve.camera_access.tls_file, "for a vhp:// camera that speaks TLS");
   command->add_option("--board", arguments->board_file, "JSON with the board's sizes");
   command->add_option("--squares", serve.observe.board.squares, "a side")
       ->check(CLI::IsMember({8, 10}))

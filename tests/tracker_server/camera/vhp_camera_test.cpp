@@ -70,13 +70,13 @@ TEST_F(VhpCameraAccess, GivesItsPicturesToWhoHasTokenAndCertificate) {
 TEST_F(VhpCameraAccess, TurnsAwayWhoHasOnlyTheCertificateAndSaysWhatIsMissing) {
   const auto camera = open({"", access_.tls_file});
   ASSERT_FALSE(camera);
-  EXPECT_NE(camera.error().message.find("--token-file"), std::string::npos) << camera.error().message;
+  EXPECT_NE(camera.error().message.find("--camera-token-file"), std::string::npos) << camera.error().message;
 }
 
 TEST_F(VhpCameraAccess, TurnsAwayWhoSpeaksNoTlsAndSaysWhatIsMissing) {
   const auto camera = open_vhp_camera(host_->address(), Pace::realtime, {access_.token_file, ""}, kSecond);
   ASSERT_FALSE(camera);
-  EXPECT_NE(camera.error().message.find("--tls-file"), std::string::npos) << camera.error().message;
+  EXPECT_NE(camera.error().message.find("--camera-tls-file"), std::string::npos) << camera.error().message;
 }
 
 }  // namespace
