@@ -17,7 +17,8 @@ if ! $run inspect --type image "$base" >/dev/null 2>&1; then
   $run rm "$container" >/dev/null
 fi
 for program in tracker_server vhd_renderer; do
-  $run build --layers --isolation chroot --ignorefile "docker/$program.Dockerfile.dockerignore" -f "docker/$program.Dockerfile" -t "counterpart/$program" .
+  # The docker format, since the OCI one knows no health check.
+  $run build --layers --format docker --isolation chroot --ignorefile "docker/$program.Dockerfile.dockerignore" -f "docker/$program.Dockerfile" -t "counterpart/$program" .
   container=$($run from "counterpart/$program")
   $run run --isolation chroot --user counterpart "$container" -- "$program" --version
   $run rm "$container" >/dev/null
