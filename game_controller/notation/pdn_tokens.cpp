@@ -5,8 +5,9 @@
 namespace counterpart {
 namespace {
 
+// All control characters too: files of DOS end with one.
 bool is_space(char c) {
-  return std::isspace(static_cast<unsigned char>(c)) != 0;
+  return static_cast<unsigned char>(c) <= ' ';
 }
 
 // Ends a word: blanks and all that begins another token.

@@ -56,6 +56,18 @@ TEST(ReadPdn, the_result_is_taken_from_the_tag_when_the_game_ends_with_a_star) {
   EXPECT_EQ(read_pdn("[Result \"0-2\"] 32-28 *")->front().result, GameResult::dark_wins);
 }
 
+TEST(ReadPdn, control_characters_are_blanks) {
+  const auto games = read_pdn("1. 32-28 19-23 (\x1a) 2. 28x19 14x23 *\r\n\x1a");
+  ASSERT_TRUE(games) << games.error().message;
+  ASSERT_EQ(games->size(), 1u);
+  EXPECT_EQ(games->front().record.moves().size(), 4u);
+  ASSERT_EQ(games->front().remarks.size(), 1u);
+  EXPECT_EQ(games->front().remarks[0].text, "()");
+  const auto again = read_pdn(write_pdn(games->front()));
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(again->front().remarks, games->front().remarks);
+}
+
 TEST(ReadPdn, names_line_and_column) {
   const struct {
     const char* text;
