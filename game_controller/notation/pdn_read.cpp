@@ -46,7 +46,7 @@ std::optional<GameResult> result_of(std::string_view word) {
 std::string on_one_line(const std::string& text) {
   std::string line;
   for (const char c : text) {
-    const bool blank = static_cast<unsigned char>(c) <= ' ';
+    const bool blank = is_pdn_blank(c);
     if (!blank) line += c;
     if (blank && !line.empty() && line.back() != ' ') line += ' ';
   }

@@ -3,16 +3,16 @@
 #include <cctype>
 
 namespace counterpart {
-namespace {
 
-// All control characters too: files of DOS end with one.
-bool is_space(char c) {
+bool is_pdn_blank(char c) {
   return static_cast<unsigned char>(c) <= ' ';
 }
 
+namespace {
+
 // Ends a word: blanks and all that begins another token.
 bool ends_word(char c) {
-  return is_space(c) || std::string_view("[]{}()\"/$!?;").find(c) != std::string_view::npos;
+  return is_pdn_blank(c) || std::string_view("[]{}()\"/$!?;").find(c) != std::string_view::npos;
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ void PdnTokens::skip_blanks_and_comment_lines() {
     const char c = text_[at_];
     if (c == ';' || (c == '%' && place_.column == 1)) {
       while (!at_end() && text_[at_] != '\n') take();
-    } else if (is_space(c)) {
+    } else if (is_pdn_blank(c)) {
       take();
     } else {
       return;

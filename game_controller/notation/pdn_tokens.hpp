@@ -13,6 +13,9 @@ struct TextPlace {
   int column = 1;
 };
 
+// Control characters are blanks, too: files of DOS end with one.
+bool is_pdn_blank(char c);
+
 // "PDN, line 3, column 7: ..."
 Error pdn_error(const TextPlace& place, const std::string& what);
 

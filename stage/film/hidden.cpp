@@ -112,8 +112,7 @@ std::vector<Cluster> player_in(const World& world) {
   if (world.seated) {
     const Eigen::Isometry3f X_BR = world.X_RB.inverse().cast<float>();
     std::vector<Capsule> shape;
-    for (const Capsule& c : world.seated->shape_R)
-      shape.push_back({X_BR * c.a_m, X_BR * c.b_m, c.radius_a_m, c.radius_b_m});
+    for (const Capsule& c : world.seated->shape_R) shape.push_back(moved(c, X_BR));
     return clustered(shape);
   }
   return clustered(arm_capsules(arm_for(world.hand.pinch_B), static_cast<float>(world.board.piece_radius_m)));

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
 
 #include "protocol/vocabulary/scene.hpp"
 #include "stage/player/gesture.hpp"
 #include "stage/room/arm.hpp"
 #include "vhd_renderer/body/build_character.hpp"
 #include "vhd_renderer/motion/actor.hpp"
+#include "vhd_renderer/motion/director.hpp"
 #include "vhd_renderer/motion/grip.hpp"
 
 namespace counterpart::stage {
@@ -79,11 +79,7 @@ Result<std::unique_ptr<SeatedBody>> SeatedBody::seat(const std::string& figure, 
   if (!anatomy) return failure(anatomy.error().code, "The player's figure " + figure + ": " + anatomy.error().message);
   state->anatomy = *std::move(anatomy);
   state->capsules_J = limb_capsules(state->figure);
-  std::set<std::string> names;
-  for (const FigurePart& part : state->figure.parts) {
-    for (const Morph& morph : part.morphs) names.insert(morph.name);
-  }
-  state->morph_names.assign(names.begin(), names.end());
+  state->morph_names = morph_names_of(state->figure);
   state->grip = grip_on_piece(state->figure, state->anatomy.arms[right_side].hand,
                               {static_cast<float>(board.piece_radius_m), static_cast<float>(board.piece_height_m),
                                static_cast<float>(board.square_size_m)});
@@ -112,15 +108,9 @@ std::shared_ptr<const SeatedPose> SeatedBody::State::pose() const {
   const BodyPose& body = actor->solved().pose;
   const Isometry3f X_RS = half_circle();
   for (std::size_t j = 0; j < figure.joints.size(); ++j) {
-    Isometry3f X_SJ;
-    X_SJ.linear() = body.G[j].toRotationMatrix() * figure.joints[j].X_HJ.linear();
-    X_SJ.translation() = body.p_S[j];
-    result->X_RJ.push_back(X_RS * X_SJ);
+    result->X_RJ.push_back(X_RS * joint_frame_S(figure, body, j));
     const Capsule& c = capsules_J[j];
-    if (c.radius_a_m > 0) {
-      const Isometry3f& X = result->X_RJ.back();
-      result->shape_R.push_back({X * c.a_m, X * c.b_m, c.radius_a_m, c.radius_b_m});
-    }
+    if (c.radius_a_m > 0) result->shape_R.push_back(moved(c, result->X_RJ.back()));
   }
   const auto& morphs = actor->controls().morphs;
   for (const std::string& name : morph_names) {

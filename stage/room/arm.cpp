@@ -18,10 +18,6 @@ Eigen::Isometry3d along_z(const Eigen::Vector3d& from, const Eigen::Vector3d& to
   return X;
 }
 
-Capsule moved(const Capsule& c, const Eigen::Isometry3f& X) {
-  return {X * c.a_m, X * c.b_m, c.radius_a_m, c.radius_b_m};
-}
-
 }  // namespace
 
 ArmPose arm_for(const Eigen::Vector3d& pinch_B) {

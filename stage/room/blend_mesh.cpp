@@ -80,6 +80,10 @@ bool cell_vertex(const Grid& grid, int x, int y, int z, Eigen::Vector3f& vertex)
 
 }  // namespace
 
+Capsule moved(const Capsule& c, const Eigen::Isometry3f& X) {
+  return {X * c.a_m, X * c.b_m, c.radius_a_m, c.radius_b_m};
+}
+
 float distance_m(const Capsule& capsule, const Eigen::Vector3f& p) {
   const Eigen::Vector3f axis = capsule.b_m - capsule.a_m;
   const float t = std::clamp((p - capsule.a_m).dot(axis) / std::max(axis.squaredNorm(), 1e-12f), 0.f, 1.f);

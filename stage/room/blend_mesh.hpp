@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "vhd_renderer/draw/mesh.hpp"
 
 namespace counterpart::stage {
@@ -11,6 +13,9 @@ struct Capsule {
   Eigen::Vector3f a_m, b_m;  // ends of the axis
   float radius_a_m, radius_b_m;
 };
+
+// The same capsule in the frame that X leads to.
+Capsule moved(const Capsule& capsule, const Eigen::Isometry3f& X);
 
 // Distance to the capsule's surface, negative inside.
 float distance_m(const Capsule& capsule, const Eigen::Vector3f& p_m);

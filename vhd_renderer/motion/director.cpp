@@ -240,13 +240,7 @@ Performance Director::State::performance() const {
   Performance p;
   const Isometry3f X_BS(AngleAxisf(dark ? pi_f : 0.F, Vector3f::UnitZ()));
   for (std::size_t j = 0; j < figure->joints.size(); ++j) {
-    Isometry3f X_SJ = figure->joints[j].X_HJ;
-    if (has_body) {
-      const BodyPose& pose = actor->solved().pose;
-      X_SJ.linear() = (pose.G[j].toRotationMatrix() * figure->joints[j].X_HJ.linear()).eval();
-      X_SJ.translation() = pose.p_S[j];
-    }
-    p.X_BJ.push_back(X_BS * X_SJ);
+    p.X_BJ.push_back(X_BS * (has_body ? joint_frame_S(*figure, actor->solved().pose, j) : figure->joints[j].X_HJ));
   }
   if (has_body) {
     const Eigen::Translation3f chair_S(0, actor->controls().chair_y, actor->home().floor_z);
@@ -284,11 +278,7 @@ Director::Director(const Figure& figure, Speaker speaker, ClipLibrary clips, Gri
   s.library = std::move(clips);
   s.grip_source = std::move(grips);
   s.figure = &figure;
-  std::set<std::string> names;
-  for (const FigurePart& part : figure.parts) {
-    for (const Morph& morph : part.morphs) names.insert(morph.name);
-  }
-  s.morph_names.assign(names.begin(), names.end());
+  s.morph_names = morph_names_of(figure);
   if (auto anatomy = anatomy_of(figure); anatomy) {
     s.anatomy = std::move(*anatomy);
     s.has_body = true;

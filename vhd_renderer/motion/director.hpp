@@ -70,6 +70,9 @@ struct SkinnedPart {
   std::vector<Eigen::Vector3f> normals;
 };
 
+// Of all its parts, each once, in order.
+std::vector<std::string> morph_names_of(const Figure& figure);
+
 void skin(const Figure& figure, const std::vector<std::string>& morph_names, const Performance& performance,
           std::vector<SkinnedPart>& parts);
 

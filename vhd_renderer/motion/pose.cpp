@@ -29,6 +29,13 @@ Eigen::Matrix3f basis(const Eigen::Vector3f& along, const Eigen::Vector3f& side)
 
 }  // namespace
 
+Eigen::Isometry3f joint_frame_S(const Figure& figure, const BodyPose& pose, std::size_t joint) {
+  Eigen::Isometry3f X_SJ = Eigen::Isometry3f::Identity();
+  X_SJ.linear() = pose.G[joint].toRotationMatrix() * figure.joints[joint].X_HJ.linear();
+  X_SJ.translation() = pose.p_S[joint];
+  return X_SJ;
+}
+
 BodyPose bind_pose(const Figure& figure) {
   BodyPose pose;
   const std::size_t n = figure.joints.size();

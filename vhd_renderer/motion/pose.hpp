@@ -28,6 +28,9 @@ inline std::size_t at(int joint) {
 
 BodyPose bind_pose(const Figure& figure);
 
+// A joint's own frame where the pose has it.
+Eigen::Isometry3f joint_frame_S(const Figure& figure, const BodyPose& pose, std::size_t joint);
+
 // Fills G and p_S of the joints from `first` on.
 void update(const Figure& figure, BodyPose& pose, std::size_t first = 0);
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <set>
 
 #include "vhd_renderer/motion/director.hpp"
 
@@ -42,6 +43,14 @@ void skin_part(const FigurePart& part, const std::vector<Matrix4f>& M, SkinnedPa
 }
 
 }  // namespace
+
+std::vector<std::string> morph_names_of(const Figure& figure) {
+  std::set<std::string> names;
+  for (const FigurePart& part : figure.parts) {
+    for (const Morph& morph : part.morphs) names.insert(morph.name);
+  }
+  return {names.begin(), names.end()};
+}
 
 void skin(const Figure& figure, const std::vector<std::string>& morph_names, const Performance& performance,
           std::vector<SkinnedPart>& parts) {

@@ -1,7 +1,8 @@
 // One host of two.
-//   far_worker tracker LISTEN TOKEN_FILE FRAMES PER_SECOND VIDEO     sends FRAMES pictures with their poses, then
-//   goodbye far_worker renderer ADDRESS TOKEN_FILE CLOCK_OFFSET_NS           pairs them; says what it saw as one JSON
-//   object
+//   far_worker tracker LISTEN TOKEN_FILE FRAMES PER_SECOND VIDEO
+// sends FRAMES pictures with their poses, then goodbye;
+//   far_worker renderer ADDRESS TOKEN_FILE CLOCK_OFFSET_NS
+// pairs them and says what it saw as one JSON object.
 // VIDEO: raw, tiny pictures; auto, as large as a camera's and as the link chooses.
 // The number of a frame is written into its picture and into its pose, so that a wrong pairing shows.
 #include <algorithm>
