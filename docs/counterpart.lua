@@ -11,7 +11,7 @@ local types = {
 }
 local fixed = { [3] = true, [6] = true, [7] = true, [8] = true, [17] = true, [18] = true, [19] = true, [21] = true }
 local status = { [1] = "ok", [2] = "coasting", [3] = "lost", [4] = "relocalised" }
-local codecs = { [1] = "raw BGR", [2] = "JPEG" }
+local codecs = { [1] = "raw BGR", [2] = "JPEG", [3] = "H.264" }
 
 local f = {
   type = ProtoField.uint16("counterpart.type", "Type", base.DEC, types),

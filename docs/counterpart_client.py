@@ -33,7 +33,7 @@ NUMBERS = {name: number for number, name in TYPES.items()}
 KEPT = {"intrinsics", "frame_done", "board_state", "game_event", "control", "scene", "command", "feedback"}
 FIXED = {"heartbeat", "clock_request", "clock_response", "acknowledge", "pose", "video", "mask", "frame_done"}
 STATUS = {1: "ok", 2: "coasting", 3: "lost", 4: "relocalised"}
-CODECS = {1: "raw_bgr8", 2: "jpeg"}
+CODECS = {1: "raw_bgr8", 2: "jpeg", 3: "h264"}
 
 
 class ProtocolError(Exception):

@@ -39,8 +39,9 @@ bool is_sane(const PoseEstimate& m) {
 }
 
 bool is_sane(PixelCodec codec, std::uint32_t width, std::uint32_t height, std::uint32_t stride, std::size_t size) {
-  if (width == 0 || height == 0) return false;
+  if (width == 0 || height == 0 || width * height > kMostPixels) return false;
   if (codec == PixelCodec::jpeg) return stride == 0 && size > 0;
+  if (codec == PixelCodec::h264) return size > 0;
   return codec == PixelCodec::raw_bgr8 && stride >= 3 * width && size == std::size_t{stride} * height;
 }
 

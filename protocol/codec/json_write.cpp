@@ -77,15 +77,17 @@ json list_of(const std::vector<T>& values) {
 }  // namespace
 
 json to_json(const Hello& m) {
-  return {{"version_min", m.version_min},
-          {"version_max", m.version_max},
-          {"role", name_of(m.role)},
-          {"software", m.software},
-          {"resume_session", m.resume_session},
-          {"last_seq", m.last_seq},
-          {"video", m.video},
-          {"want_video", m.want_video},
-          {"lockstep", m.lockstep}};
+  json out{{"version_min", m.version_min},
+           {"version_max", m.version_max},
+           {"role", name_of(m.role)},
+           {"software", m.software},
+           {"resume_session", m.resume_session},
+           {"last_seq", m.last_seq},
+           {"video", m.video},
+           {"want_video", m.want_video},
+           {"lockstep", m.lockstep}};
+  if (m.h264) out["h264"] = true;
+  return out;
 }
 
 json to_json(const Welcome& m) {

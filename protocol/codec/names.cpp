@@ -175,7 +175,8 @@ struct Names<TrackStatus> {
 
 template <>
 struct Names<PixelCodec> {
-  static constexpr Table<PixelCodec, 2> table{{{PixelCodec::raw_bgr8, "raw_bgr8"}, {PixelCodec::jpeg, "jpeg"}}};
+  static constexpr Table<PixelCodec, 3> table{
+      {{PixelCodec::raw_bgr8, "raw_bgr8"}, {PixelCodec::jpeg, "jpeg"}, {PixelCodec::h264, "h264"}}};
 };
 
 template <>

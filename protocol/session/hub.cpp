@@ -398,6 +398,10 @@ void Hub::broadcast(const Outgoing& message, std::int64_t now_ns) {
 void Hub::push(Peer& peer, Outgoing message, std::int64_t now_ns) {
   const bool video = message.type == MessageType::video;
   if (video && !peer.want_video) return;
+  if (message.chain != Chain::none && !peer.takes_h264) {
+    ++peer.counts.dropped;
+    return;
+  }
   Lane& lane = lane_of(peer, video ? LaneName::video : LaneName::main);
   lane.push(std::move(message));
   if (!lane.overflowed()) return;
@@ -436,6 +440,16 @@ bool Hub::carries_video(ConnectionId id) const {
   return found != connections_.end() && found->second.stage == Stage::open && found->second.lane == LaneName::video;
 }
 
+bool Hub::takes_h264(ConnectionId id) const {
+  const auto found = connections_.find(id);
+  const auto peer = found == connections_.end() ? peers_.end() : peers_.find(found->second.peer);
+  return peer != peers_.end() && peer->second.takes_h264;
+}
+
+void Hub::count_dropped(PeerId peer) {
+  if (const auto found = peers_.find(peer); found != peers_.end()) ++found->second.counts.dropped;
+}
+
 ConnectionId Hub::carrier(PeerId id, MessageType type) const {
   const auto found = peers_.find(id);
   if (found == peers_.end()) return 0;
@@ -449,8 +463,18 @@ bool Hub::keeps(PeerId id, MessageType type) const {
 
 std::uint64_t Hub::dropped_pictures() const {
   std::uint64_t dropped = 0;
-  for (const auto& [id, peer] : peers_) dropped += peer.video.dropped();
+  for (const auto& [id, peer] : peers_) {
+    if (peer.video_connection != 0) dropped += peer.video.dropped();
+  }
   return dropped;
+}
+
+std::uint32_t Hub::waiting_pictures() const {
+  std::uint32_t most = 0;
+  for (const auto& [id, peer] : peers_) {
+    if (peer.video_connection != 0) most = std::max(most, peer.video.queued());
+  }
+  return most;
 }
 
 std::vector<PeerStats> Hub::stats(std::int64_t now_ns) const {

@@ -68,11 +68,14 @@ class Hub {
   bool overdue(ConnectionId connection, std::int64_t now_ns) const;
   bool exists(ConnectionId connection) const { return connections_.count(connection) > 0; }
   bool carries_video(ConnectionId connection) const;
+  bool takes_h264(ConnectionId connection) const;
   ConnectionId carrier(PeerId peer, MessageType type) const;  // on which messages of this type go to it; 0: none now
   bool keeps(PeerId peer, MessageType type) const;            // none of these is lost or replaced by a newer one
   // Grows whenever connections or sessions come, go or change: what concerns one connection alone leaves it as it is.
   std::uint64_t changes() const { return changes_; }
-  std::uint64_t dropped_pictures() const;  // of all peers, by newer ones
+  std::uint64_t dropped_pictures() const;  // by newer ones, of all peers that are there
+  std::uint32_t waiting_pictures() const;  // to go out, of the peer that has the most
+  void count_dropped(PeerId peer);         // a message that came and was of no use
   void closed(ConnectionId connection, Error why, std::int64_t now_ns);
 
   // Heartbeats, deadlines, clock requests. next_tick: when it should be called at the latest.
@@ -110,6 +113,7 @@ class Hub {
     std::string software;
     bool want_video = false;
     bool lockstep = false;
+    bool takes_h264 = false;
     Lane main, video;
     ConnectionId main_connection = 0, video_connection = 0;  // 0: none
     std::int64_t away_since_ns = 0;

@@ -13,6 +13,7 @@ void Hub::begin_hello(ConnectionId id, Connection& connection, std::int64_t now_
   hello.video = connection.lane == LaneName::video;
   hello.want_video = options_.want_video;
   hello.lockstep = options_.lockstep;
+  hello.h264 = options_.takes_h264;
   if (const auto peer = peers_.find(server_peer_); peer != peers_.end()) {
     hello.resume_session = peer->second.session;
     hello.last_seq = lane_of(peer->second, connection.lane).last_received();
@@ -85,6 +86,7 @@ Result<void> Hub::admit(ConnectionId id, Connection& connection, std::int64_t no
   Peer& peer = resumed ? peers_.at(known->second)
                        : make_peer(random_session(), hello.role, hello.software, hello.lockstep && options_.lockstep);
   peer.want_video = hello.want_video || hello.video;
+  peer.takes_h264 = hello.h264;
   Welcome welcome;
   welcome.version = *agree_on_version(hello.version_min, hello.version_max);
   welcome.session = peer.session;

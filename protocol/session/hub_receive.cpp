@@ -9,6 +9,7 @@ namespace {
 
 // A program that does not read for a while finds the newest pictures, not all of them.
 constexpr int kMostPictures = 8;
+constexpr int kMostChainedInbound = 64;  // small ones, of which the newest needs those before it
 
 // An acknowledgement of its own would wake the peer for nothing if an answer goes out a moment later.
 constexpr std::int64_t kAcknowledgeWithin = 5'000'000;
@@ -137,8 +138,9 @@ Result<void> Hub::on_open_message(ConnectionId id, Connection& connection, const
 }
 
 void Hub::deliver(Peer& peer, Message&& message, std::int64_t now_ns) {
-  const bool picture = std::holds_alternative<VideoFrame>(message);
-  if (picture && !peer.lockstep && ++peer.pictures_waiting > kMostPictures) {
+  const auto* picture = std::get_if<VideoFrame>(&message);
+  const int most = picture != nullptr && picture->codec == PixelCodec::h264 ? kMostChainedInbound : kMostPictures;
+  if (picture != nullptr && !peer.lockstep && ++peer.pictures_waiting > most) {
     const auto oldest = std::find_if(inbound_.begin(), inbound_.end(), [&](const Inbound& inbound) {
       const auto* received = std::get_if<Received>(&inbound);
       return received != nullptr && received->peer == peer.id && std::holds_alternative<VideoFrame>(received->message);

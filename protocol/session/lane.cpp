@@ -22,6 +22,9 @@ std::ptrdiff_t most_waiting(MessageType type) {
   }
 }
 
+// A third of a second: what a link that hesitates delays must not break the chain.
+constexpr std::ptrdiff_t kMostChained = 8;
+
 }  // namespace
 
 bool Lane::keeps(MessageType type) const {
@@ -36,19 +39,30 @@ void Lane::push(Outgoing message) {
     message.seq = next_seq_++;
     ++kept_count_;
     kept_bytes_ += message.body->size();
-  } else {
-    drop_oldest_like(message);
+  } else if (!drop_for(message)) {
+    return;
   }
   waiting_.push_back(std::move(message));
 }
 
-void Lane::drop_oldest_like(const Outgoing& message) {
+// Makes room for it. False: it would be of no use itself, since what it builds on was dropped.
+bool Lane::drop_for(const Outgoing& message) {
   const auto alike = [&](const Outgoing& other) {
     return other.seq == 0 && other.type == message.type && other.object == message.object;
   };
-  if (std::count_if(waiting_.begin(), waiting_.end(), alike) < most_waiting(message.type)) return;
-  waiting_.erase(std::find_if(waiting_.begin(), waiting_.end(), alike));
+  const auto count = std::count_if(waiting_.begin(), waiting_.end(), alike);
+  if (message.chain == Chain::none) {
+    if (count < most_waiting(message.type)) return true;
+    waiting_.erase(std::find_if(waiting_.begin(), waiting_.end(), alike));
+    ++dropped_;
+    return true;
+  }
+  if (count < kMostChained) return true;
+  waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(), alike), waiting_.end());
+  dropped_ += static_cast<std::uint64_t>(count);
+  if (message.chain == Chain::begins) return true;
   ++dropped_;
+  return false;
 }
 
 const Outgoing* Lane::take() {

@@ -10,11 +10,15 @@
 
 namespace counterpart {
 
+// Of pictures that build on earlier ones.
+enum class Chain : std::uint8_t { none, begins, goes_on };
+
 struct Outgoing {
   MessageType type = MessageType::heartbeat;
   std::uint32_t object = 0;  // latest-wins goes by type and object
   FrameId frame_id = 0;
   std::uint64_t seq = 0;  // 0: not kept
+  Chain chain = Chain::none;
   std::shared_ptr<const Bytes> body;
 };
 
@@ -51,7 +55,7 @@ class Lane {
   bool overflowed() const;
 
  private:
-  void drop_oldest_like(const Outgoing& message);
+  bool drop_for(const Outgoing& message);
 
   bool lockstep_ = false;
   std::deque<Outgoing> waiting_;

@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "protocol/transport/video_coding.hpp"
 #include "protocol/vocabulary/message.hpp"
 #include "protocol/vocabulary/result.hpp"
 
@@ -81,9 +82,11 @@ struct LinkOptions {
   std::string token_file;  // needed for a listening address other than loopback
   std::string tls_file;  // TLS 1.3 with this identity (transport/tls.hpp), and with nobody who has none; empty: no TLS
   // Raw pictures are turned into this before they are sent. Empty: raw on loopback, between hosts what the links carry
-  // (transport/video_choice.hpp).
+  // (transport/video_choice.hpp). h264 goes out as JPEG while there is a viewer who does not take it.
   std::optional<PixelCodec> video_codec;
   bool want_video = true;
+  bool takes_h264 = false;  // pictures may come in H.264
+  VideoCoding h264;         // without an encoder none is sent; without a decoder what comes is handed on as it is
   std::int64_t heartbeat_ns = 500'000'000;
   std::int64_t dead_after_ns = 1'400'000'000;  // noticed within 1.5 s also by a busy machine
   std::string record_file;                     // every message and the exact bytes, as MCAP; empty: no capture

@@ -53,6 +53,9 @@ Result<VideoFrame> expand(const VideoFrame& frame) {
 
 Result<VideoFrame> convert(const VideoFrame& frame, PixelCodec codec, int quality) {
   if (frame.codec == codec) return frame;
+  if (frame.codec == PixelCodec::h264 || codec == PixelCodec::h264) {
+    return failure(ErrorCode::unsupported, "one picture alone cannot be turned into H.264, or from it");
+  }
   return codec == PixelCodec::jpeg ? compress(frame, quality) : expand(frame);
 }
 

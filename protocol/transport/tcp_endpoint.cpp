@@ -2,6 +2,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <limits>
+#include <map>
 #include <mutex>
 #include <thread>
 
@@ -48,7 +49,7 @@ constexpr auto kLongestHeld = std::chrono::microseconds(200);  // where no more 
 
 // What the system may hold of a link to another host beyond what is under way: where it holds seconds of pictures, no
 // newer one can replace them.
-constexpr int kMostUnsent = 128 << 10;
+constexpr int kMostUnsent = 32 << 10;
 
 void limit_unsent(int socket) {
   static_cast<void>(::setsockopt(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kMostUnsent, sizeof kMostUnsent));
@@ -95,6 +96,8 @@ class TcpEndpoint : public Endpoint {
         identity_(std::move(prepared.identity)),
         recorder_(std::move(prepared.recorder)),
         hub_(end, options, std::move(prepared.token), recorder_.get()),
+        video_choice_(options.video_codec),
+        h264_encoder_(options.h264.encoder ? options.h264.encoder() : nullptr),
         acceptor_(io_),
         timer_(io_),
         lease_timer_(io_),
@@ -190,6 +193,7 @@ class TcpEndpoint : public Endpoint {
     if (timeout_ns > 0) take_lease(now_ns);
     auto taken = hub_.take_inbound();
     if (!leased(now_ns)) wait_for_all();  // it may have been too full to read on
+    if (options_.h264.decoder) expand(taken, lock);
     return taken;
   }
 
@@ -212,11 +216,57 @@ class TcpEndpoint : public Endpoint {
   Result<Outgoing> prepare(const Message& message, std::unique_lock<std::mutex>& lock) {
     const bool at_once = std::holds_alternative<PoseEstimate>(message);
     const VideoForm form = form_for(message);
+    const bool afresh = form.codec == PixelCodec::h264 && breaks_chain();
     auto memory = memory_for(message);
     if (!at_once) lock.unlock();
-    auto outgoing = make_outgoing(message, form, std::move(memory));
+    auto outgoing = form.codec == PixelCodec::h264 ? make_chained(message, {afresh, form.bits_a_picture}, memory)
+                                                   : make_outgoing(message, form, memory);
     if (!at_once) lock.lock();
     return outgoing;
+  }
+
+  // Without the mutex.
+  Result<Outgoing> make_chained(const Message& message, const VideoEncoder::Wish& wish, std::shared_ptr<Bytes> memory) {
+    auto coded = h264_encoder_->encode(std::get<VideoFrame>(message), wish);
+    if (!coded) {
+      h264_encoder_.reset();  // JPEG will do
+      return tl::make_unexpected(coded.error());
+    }
+    return make_outgoing(std::move(*coded), {}, std::move(memory));
+  }
+
+  // Somebody lacks pictures that the next one would build on.
+  bool breaks_chain() {
+    ConnectionId newest = 0;
+    for (const auto& watched : links_) {
+      if (hub_.carries_video(watched->link.id())) newest = watched->link.id();
+    }
+    const std::uint64_t dropped = hub_.dropped_pictures();
+    return std::exchange(newest_viewer_, newest) != newest || std::exchange(dropped_seen_, dropped) != dropped;
+  }
+
+  // What came in H.264, raw. What builds on a picture that did not come is left out; decoding keeps nobody waiting.
+  void expand(std::vector<Inbound>& inbound, std::unique_lock<std::mutex>& lock) {
+    lock.unlock();
+    std::vector<PeerId> useless;
+    const auto is_useless = [&](Inbound& one) {
+      if (const auto* left = std::get_if<PeerLeft>(&one)) h264_decoders_.erase(left->peer);
+      auto* received = std::get_if<Received>(&one);
+      auto* picture = received == nullptr ? nullptr : std::get_if<VideoFrame>(&received->message);
+      if (picture == nullptr || picture->codec != PixelCodec::h264) return false;
+      auto& decoder = h264_decoders_[received->peer];
+      if (decoder == nullptr) decoder = options_.h264.decoder();
+      auto raw = decoder->decode(*picture);
+      if (raw && *raw) {
+        *picture = std::move(**raw);
+        return false;
+      }
+      useless.push_back(received->peer);
+      return true;
+    };
+    inbound.erase(std::remove_if(inbound.begin(), inbound.end(), is_useless), inbound.end());
+    lock.lock();
+    for (const PeerId peer : useless) hub_.count_dropped(peer);
   }
 
   std::shared_ptr<Bytes> memory_for(const Message& message) {
@@ -227,19 +277,23 @@ class TcpEndpoint : public Endpoint {
 
   VideoForm form_for(const Message& message) {
     const auto* picture = std::get_if<VideoFrame>(&message);
-    if (options_.video_codec || picture == nullptr) return {options_.video_codec.value_or(PixelCodec::raw_bgr8)};
+    if (picture == nullptr || picture->codec != PixelCodec::raw_bgr8) return {};
     VideoLinks links = video_links();
-    if (options_.lockstep) links.slowest_bytes_per_second = 0;  // two runs must give the same bytes
-    return video_choice_.choose(picture->bytes.size(), links, monotonic_ns());
+    if (!options_.lockstep) return video_choice_.choose(picture->bytes.size(), links, monotonic_ns());
+    links.slowest_bytes_per_second = 0;  // two runs must give the same bytes
+    return video_choice_.choose(picture->bytes.size(), links, picture->stamp.capture_ns);
   }
 
   VideoLinks video_links() const {
     VideoLinks all;
     all.dropped = hub_.dropped_pictures();
+    all.waiting = hub_.waiting_pictures();
     all.slowest_bytes_per_second = std::numeric_limits<double>::max();
+    all.h264 = h264_encoder_ != nullptr;
     for (const auto& watched : links_) {
       if (!hub_.carries_video(watched->link.id())) continue;
       all.all_local = all.all_local && watched->local;
+      all.h264 = all.h264 && hub_.takes_h264(watched->link.id());
       all.slowest_bytes_per_second = std::min(all.slowest_bytes_per_second, delivery_rate(watched->link.socket()));
     }
     return all;
@@ -505,6 +559,10 @@ class TcpEndpoint : public Endpoint {
   std::condition_variable changed_;
   Hub hub_;
   VideoChoice video_choice_;
+  std::unique_ptr<VideoEncoder> h264_encoder_;  // null: none
+  std::map<PeerId, std::unique_ptr<VideoDecoder>> h264_decoders_;
+  ConnectionId newest_viewer_ = 0;
+  std::uint64_t dropped_seen_ = 0;
   BodyPool poses_{kPosesReused}, pictures_{kPicturesReused};
   HostPort address_;
   bool leaving_ = false;

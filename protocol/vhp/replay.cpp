@@ -32,6 +32,7 @@ Result<std::unique_ptr<Endpoint>> open_end(const ReplayArguments& arguments, Rol
   options.token_file = arguments.link.token_file;
   options.tls_file = arguments.link.tls_file;
   options.lockstep = arguments.lockstep;
+  options.takes_h264 = true;  // nobody looks at the pictures here
   if (!arguments.listen.empty()) return listen_tcp(arguments.listen, options);
   return connect_tcp(arguments.connect, options, static_cast<std::int64_t>(arguments.patience_s * 1e9));
 }
@@ -118,6 +119,10 @@ int play(const ReplayArguments& arguments, SessionReader& reader, Endpoint& endp
   }
   wait_until(peer, monotonic_ns() + 500'000'000);
   std::cout << sent << " messages replayed as " << arguments.role << '\n';
+  std::uint64_t dropped = 0;
+  for (const PeerStats& stats : endpoint.stats()) dropped += stats.dropped;
+  if (dropped > 0)
+    std::cerr << "vhp: " << dropped << " of them were replaced by newer ones, or not taken by the peer\n";
   return stop_requested() ? kFailed : kFine;
 }
 

@@ -60,6 +60,7 @@ struct Hello {
   bool video = false;                // this connection carries VIDEO for resume_session, nothing else
   bool want_video = false;           // a second connection for VIDEO will follow
   bool lockstep = false;             // no frame dropped; FRAME_DONE paces the camera
+  bool h264 = false;                 // pictures may come in H.264, besides raw and JPEG
 
   friend bool operator==(const Hello&, const Hello&) = default;
 };

@@ -11,7 +11,10 @@ namespace counterpart {
 enum class PixelCodec : std::uint16_t {
   raw_bgr8 = 1,  // rows of width * 3 bytes, `stride` bytes apart
   jpeg = 2,      // stride is 0
+  h264 = 3,      // Annex B, 4:2:0, BT.601; stride: how many frame_ids back the picture lies that it builds on; 0: on none
 };
+
+constexpr std::uint32_t kMostPixels = 1U << 25;  // a small message must not become gigabytes when it is read
 
 struct VideoFrame {
   FrameStamp stamp;

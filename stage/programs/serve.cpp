@@ -8,6 +8,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
+#include "protocol/h264/h264.hpp"
 #include "stage/film/sequence.hpp"
 
 namespace counterpart::stage {
@@ -152,6 +153,7 @@ Result<void> run_serve(const ServeOptions& options, const std::function<bool()>&
   link.lockstep = options.lockstep;
   link.token_file = options.token_file;
   link.tls_file = options.tls_file;
+  use_h264(link);
   Result<std::unique_ptr<Endpoint>> endpoint = listen_tcp(options.listen, link);
   if (!endpoint) return tl::make_unexpected(endpoint.error());
   spdlog::info("a camera at vhp://{}", (*endpoint)->address());

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "protocol/daemon/stop_signal.hpp"
+#include "protocol/h264/h264.hpp"
 #include "protocol/transport/endpoint.hpp"
 #include "protocol/transport/jpeg.hpp"
 
@@ -85,6 +86,7 @@ Result<std::unique_ptr<Camera>> open_vhp_camera(const std::string& host_port, Pa
   options.lockstep = pace == Pace::lockstep;
   options.token_file = access.token_file;
   options.tls_file = access.tls_file;
+  use_h264(options);
   auto link = connect_tcp(host_port, options, wait_ns);
   if (!link) {
     const bool lacks_file = link.error().message.find("-file") != std::string::npos;

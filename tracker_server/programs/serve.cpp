@@ -11,6 +11,7 @@
 
 #include "protocol/daemon/picture_memory.hpp"
 #include "protocol/daemon/stop_signal.hpp"
+#include "protocol/h264/h264.hpp"
 #include "tracker_server/programs/corners.hpp"
 #include "tracker_server/programs/programs.hpp"
 
@@ -79,6 +80,8 @@ Result<void> complete(Arguments& arguments) {
   serve.link.lockstep = serve.lockstep;
   if (arguments.video == "raw") serve.link.video_codec = PixelCodec::raw_bgr8;
   if (arguments.video == "jpeg") serve.link.video_codec = PixelCodec::jpeg;
+  if (arguments.video == "h264") serve.link.video_codec = PixelCodec::h264;
+  use_h264(serve.link);
   return {};
 }
 
@@ -145,8 +148,8 @@ void add_serve(CLI::App& app, int& exit_code) {
   command->add_option("--record", serve.link.record_file, "capture everything on the link, MCAP");
   command
       ->add_option("--video", arguments->video,
-                   "raw, jpeg, or auto: raw on loopback, between hosts by what the link carries")
-      ->check(CLI::IsMember({"auto", "raw", "jpeg"}))
+                   "raw, jpeg, h264, or auto: raw on loopback, between hosts by what the link carries")
+      ->check(CLI::IsMember({"auto", "raw", "jpeg", "h264"}))
       ->capture_default_str();
   command->callback([arguments, &exit_code] {
     if (auto completed = complete(*arguments); !completed) {

@@ -1,13 +1,11 @@
-// FFmpeg's objects, freed when they go.
+// What a file takes besides protocol/h264's objects of FFmpeg.
 #pragma once
 
-#include <memory>
-
 extern "C" {
-#include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
-#include <libswscale/swscale.h>
 }
+
+#include "protocol/h264/ffmpeg_handles.hpp"
 
 namespace counterpart {
 
@@ -16,18 +14,6 @@ struct FormatDeleter {
     if (format->pb != nullptr) avio_closep(&format->pb);
     avformat_free_context(format);
   }
-};
-struct CodecDeleter {
-  void operator()(AVCodecContext* codec) const { avcodec_free_context(&codec); }
-};
-struct FrameDeleter {
-  void operator()(AVFrame* frame) const { av_frame_free(&frame); }
-};
-struct PacketDeleter {
-  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
-};
-struct ScalerDeleter {
-  void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
 };
 
 // Gives `frame` (null: flushes) to an encoder and what comes out of it to the file; returns FFmpeg's code, 0 or below.

@@ -14,6 +14,7 @@
 #include "protocol/codec/names.hpp"
 #include "protocol/daemon/step_times.hpp"
 #include "protocol/daemon/stop_signal.hpp"
+#include "protocol/h264/h264.hpp"
 #include "protocol/transport/jpeg.hpp"
 #include "protocol/vocabulary/pose_eigen.hpp"
 #include "vhd_renderer/body/build_character.hpp"
@@ -306,7 +307,9 @@ Result<void> serve(const RendererOptions& options) {
   if (!clips) return tl::make_unexpected(clips.error());
   auto port = open_director_port(options);
   if (!port) return tl::make_unexpected(port.error());
-  auto tracker = connect_tcp(options.tracker, options.link, options.patience_ns);
+  LinkOptions link = options.link;
+  use_h264(link);
+  auto tracker = connect_tcp(options.tracker, link, options.patience_ns);
   if (!tracker) return tl::make_unexpected(tracker.error());
   RendererDaemon daemon(options, std::move(*tracker), DirectorPort(std::move(*port)), std::move(*figure),
                         std::move(*clips));

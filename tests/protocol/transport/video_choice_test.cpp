@@ -71,6 +71,62 @@ TEST(VideoChoice, PicturesBecomeSmallerUntilASlowLinkCarriesAllAndLargerWhenItIs
   EXPECT_EQ(quality_after(5, 1200), kJpegQuality);
 }
 
+TEST(VideoChoice, ASlowLinkGoesOverToH264IfAllViewersTakeIt) {
+  VideoChoice choice;
+  std::int64_t now_ns = 0;
+  VideoLinks links{false, 3 * kMegabyte / 8, 0, 0, true};
+  VideoForm form;
+  // Each second a picture is dropped as long as more goes out than 3 Mbit/s; JPEG always does. What the link delivers
+  // is known then, so 8 and 4 Mbit/s are not even tried.
+  const auto seconds_pass = [&](int seconds) {
+    for (int i = 0; i < 25 * seconds; ++i) {
+      form = choice.choose(kPicture, links, now_ns += kFrameNs);
+      if (i % 25 == 0 && (form.codec != PixelCodec::h264 || form.bits_a_picture > 3'000'000 / 25)) ++links.dropped;
+    }
+  };
+  seconds_pass(3);
+  EXPECT_EQ(form.codec, PixelCodec::h264);
+  EXPECT_EQ(form.bits_a_picture, 2'000'000 / 25);
+  links.h264 = false;  // a viewer came who does not take it
+  EXPECT_EQ(choice.choose(kPicture, links, now_ns += kFrameNs).codec, PixelCodec::jpeg);
+}
+
+TEST(VideoChoice, WhatIsAlwaysLateIsTooMuchThoughNothingIsDropped) {
+  VideoChoice choice(PixelCodec::h264);
+  std::int64_t now_ns = 0;
+  const auto bits_after = [&](int pictures, std::uint32_t waiting) {
+    VideoForm form;
+    for (int i = 0; i < pictures; ++i)
+      form = choice.choose(kPicture, {false, kMegabyte, 0, waiting, true}, now_ns += kFrameNs);
+    return form.bits_a_picture * 25;
+  };
+  EXPECT_EQ(bits_after(25, 0), 8'000'000);
+  EXPECT_EQ(bits_after(8, 4), 8'000'000) << "the link hesitated";
+  EXPECT_EQ(bits_after(25, 0), 8'000'000);
+  EXPECT_EQ(bits_after(12, 4), 4'000'000);
+}
+
+TEST(VideoChoice, H264SpreadsItsRateOverThePicturesThatCome) {
+  VideoChoice choice(PixelCodec::h264);
+  const VideoLinks links{false, 0, 0, 0, true};
+  VideoForm form;
+  for (int i = 1; i <= 100; ++i) form = choice.choose(kPicture, links, i * 2 * kFrameNs);
+  EXPECT_NEAR(static_cast<double>(form.bits_a_picture), 8e6 / 12.5, 1e4) << "12.5 a second";
+}
+
+TEST(VideoChoice, KeepsToTheCodecThatWasAskedFor) {
+  VideoLinks links{false, 100 * kMegabyte, 0, 0, true};
+  for (const auto codec : {PixelCodec::raw_bgr8, PixelCodec::jpeg, PixelCodec::h264}) {
+    VideoChoice choice(codec);
+    for (int i = 1; i <= 500; ++i) {
+      if (i % 50 == 0) ++links.dropped;
+      EXPECT_EQ(choice.choose(kPicture, links, i * kFrameNs).codec, codec);
+    }
+  }
+  links.h264 = false;
+  EXPECT_EQ(VideoChoice(PixelCodec::h264).choose(kPicture, links, kFrameNs).codec, PixelCodec::jpeg);
+}
+
 TEST(VideoChoice, FastSmallPicturesAreJudgedByWhatTheyNeed) {
   VideoChoice choice;
   std::int64_t now_ns = 0;

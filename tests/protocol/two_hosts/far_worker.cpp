@@ -3,7 +3,7 @@
 // sends FRAMES pictures with their poses, then goodbye;
 //   far_worker renderer ADDRESS TOKEN_FILE CLOCK_OFFSET_NS
 // pairs them and says what it saw as one JSON object.
-// VIDEO: raw, tiny pictures; auto, as large as a camera's and as the link chooses.
+// VIDEO: raw, tiny pictures; auto, as large as a camera's and as the link chooses; jpeg, so without H.264.
 // The number of a frame is written into its picture and into its pose, so that a wrong pairing shows.
 #include <algorithm>
 #include <cstdio>
@@ -16,6 +16,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "protocol/h264/h264.hpp"
 #include "protocol/transport/endpoint.hpp"
 #include "protocol/transport/jpeg.hpp"
 #include "protocol/transport/monotonic_clock.hpp"
@@ -28,12 +29,13 @@ using namespace counterpart;
 constexpr std::int64_t kSecond = 1'000'000'000;
 
 std::unique_ptr<Endpoint> open(bool listens, const std::string& address, const std::string& token_file,
-                               bool raw = false) {
+                               const std::string& video = "auto") {
   LinkOptions options;
   options.role = listens ? Role::tracker : Role::renderer;
   options.software = "far_worker";
   options.token_file = token_file;
-  if (raw) options.video_codec = PixelCodec::raw_bgr8;
+  if (video == "raw") options.video_codec = PixelCodec::raw_bgr8;
+  if (video == "auto") use_h264(options);
   auto link = listens ? listen_tcp(address, options) : connect_tcp(address, options);
   if (link) return std::move(*link);
   std::fprintf(stderr, "%s\n", link.error().message.c_str());
@@ -53,13 +55,20 @@ VideoFrame empty_picture(std::uint16_t width, std::uint16_t height) {
 }
 
 // Noise on shades, about as hard to compress as a camera's picture of a room.
-VideoFrame camera_picture() {
+VideoFrame camera_picture(unsigned seed) {
   VideoFrame out = empty_picture(720, 576);
-  std::mt19937 random(7);
+  std::mt19937 random(seed);
   for (std::size_t at = 0; at < out.bytes.size(); ++at) {
     const std::size_t row = at / out.stride, column = at % out.stride;
     out.bytes[at] = static_cast<std::uint8_t>(60 + row / 8 + column / 48 + random() % 24);
   }
+  return out;
+}
+
+// One after the other, again and again: a camera's noise is another in each picture.
+std::vector<VideoFrame> camera_pictures() {
+  std::vector<VideoFrame> out;
+  for (unsigned seed = 1; seed <= 8; ++seed) out.push_back(camera_picture(seed));
   return out;
 }
 
@@ -90,7 +99,7 @@ bool is_of(const PairedFrame& pair, FrameId frame) {
 }
 
 // Waits for the renderer, and at the end until everything went out.
-int track(Endpoint& link, FrameId frames, double per_second, VideoFrame picture) {
+int track(Endpoint& link, FrameId frames, double per_second, std::vector<VideoFrame> pictures) {
   bool joined = false;
   while (!joined) {
     for (const Inbound& inbound : link.receive(kSecond)) joined |= std::holds_alternative<PeerJoined>(inbound);
@@ -103,6 +112,7 @@ int track(Endpoint& link, FrameId frames, double per_second, VideoFrame picture)
     pose.stamp = {frame, monotonic_ns()};
     pose.status = TrackStatus::ok;
     pose.X_CB.p[0] = static_cast<double>(frame);
+    VideoFrame& picture = pictures[frame % pictures.size()];
     write_number(picture, frame);
     link.broadcast(picture);
     link.broadcast(pose);
@@ -125,7 +135,7 @@ double median(const std::vector<double>& values) {
 
 int render(Endpoint& link, std::int64_t true_offset_ns) {
   Pairing pairing(PairingPolicy::newest);
-  std::uint64_t composited = 0, wrong = 0, raw = 0, jpeg = 0, picture_bytes = 0, inside = 0;
+  std::uint64_t composited = 0, wrong = 0, pictures = 0, bytes = 0, inside = 0;
   std::vector<double> errors_ms, bounds_ms, delays_ms, seen_at_s;
   std::int64_t next_look = 0;
   for (bool over = false; !over;) {
@@ -135,8 +145,7 @@ int render(Endpoint& link, std::int64_t true_offset_ns) {
       if (received == nullptr) continue;
       if (const auto* pose = std::get_if<PoseEstimate>(&received->message)) pairing.add(*pose);
       if (auto* video = std::get_if<VideoFrame>(&received->message)) {
-        ++(video->codec == PixelCodec::raw_bgr8 ? raw : jpeg);
-        picture_bytes += video->bytes.size();
+        ++pictures;
         seen_at_s.push_back(static_cast<double>(received->received_ns) / 1e9);
         delays_ms.push_back(static_cast<double>(received->received_ns + true_offset_ns - video->stamp.capture_ns) /
                             1e6);
@@ -148,6 +157,7 @@ int render(Endpoint& link, std::int64_t true_offset_ns) {
       }
     }
     const auto stats = link.stats();
+    if (!stats.empty()) bytes = stats[0].bytes_received;
     if (monotonic_ns() < next_look || stats.empty() || stats[0].clock_bound_ns < 0) continue;
     next_look = monotonic_ns() + kSecond / 10;
     const std::int64_t error_ns = std::abs(stats[0].clock_offset_ns - true_offset_ns);
@@ -156,13 +166,10 @@ int render(Endpoint& link, std::int64_t true_offset_ns) {
     bounds_ms.push_back(static_cast<double>(stats[0].clock_bound_ns) / 1e6);
   }
   const double worst = errors_ms.empty() ? -1 : *std::max_element(errors_ms.begin(), errors_ms.end());
-  const std::uint64_t pictures = raw + jpeg;
   const double over_s = pictures > 1 ? seen_at_s.back() - seen_at_s.front() : 1;
   std::cout << nlohmann::json{{"pictures", pictures},
-                              {"raw", raw},
-                              {"jpeg", jpeg},
                               {"pictures_per_s", static_cast<double>(pictures) / over_s},
-                              {"bytes_a_picture", pictures > 0 ? picture_bytes / pictures : 0},
+                              {"bytes_a_picture", pictures > 0 ? bytes / pictures : 0},
                               {"delay_ms_median", median(delays_ms)},
                               {"delay_ms_p95", quantile(delays_ms, 0.95)},
                               {"composited", composited},
@@ -181,15 +188,15 @@ int render(Endpoint& link, std::int64_t true_offset_ns) {
 int main(int argc, char** argv) {
   const std::string role = argc > 4 ? argv[1] : "";
   if (role == "tracker" && argc == 7) {
-    const bool tiny = std::string(argv[6]) == "raw";
-    return track(*open(true, argv[2], argv[3], tiny), std::strtoull(argv[4], nullptr, 10), std::atof(argv[5]),
-                 tiny ? empty_picture(16, 12) : camera_picture());
+    const std::string video = argv[6];
+    return track(*open(true, argv[2], argv[3], video), std::strtoull(argv[4], nullptr, 10), std::atof(argv[5]),
+                 video == "raw" ? std::vector{empty_picture(16, 12)} : camera_pictures());
   }
   if (role == "renderer" && argc == 5) {
     return render(*open(false, argv[2], argv[3]), std::strtoll(argv[4], nullptr, 10));
   }
   std::fprintf(stderr,
-               "usage: far_worker tracker LISTEN TOKEN_FILE FRAMES PER_SECOND raw|auto\n"
+               "usage: far_worker tracker LISTEN TOKEN_FILE FRAMES PER_SECOND raw|jpeg|auto\n"
                "       far_worker renderer ADDRESS TOKEN_FILE CLOCK_OFFSET_NS\n");
   return 2;
 }
