@@ -440,10 +440,11 @@ bool Hub::carries_video(ConnectionId id) const {
   return found != connections_.end() && found->second.stage == Stage::open && found->second.lane == LaneName::video;
 }
 
-bool Hub::takes_h264(ConnectionId id) const {
-  const auto found = connections_.find(id);
-  const auto peer = found == connections_.end() ? peers_.end() : peers_.find(found->second.peer);
-  return peer != peers_.end() && peer->second.takes_h264;
+bool Hub::all_take_h264() const {
+  return std::all_of(peers_.begin(), peers_.end(), [](const auto& known) {
+    const Peer& peer = known.second;
+    return !peer.want_video || peer.main_connection == 0 || peer.takes_h264;
+  });
 }
 
 void Hub::count_dropped(PeerId peer) {

@@ -68,7 +68,7 @@ class Hub {
   bool overdue(ConnectionId connection, std::int64_t now_ns) const;
   bool exists(ConnectionId connection) const { return connections_.count(connection) > 0; }
   bool carries_video(ConnectionId connection) const;
-  bool takes_h264(ConnectionId connection) const;
+  bool all_take_h264() const;  // who is there and wants pictures
   ConnectionId carrier(PeerId peer, MessageType type) const;  // on which messages of this type go to it; 0: none now
   bool keeps(PeerId peer, MessageType type) const;            // none of these is lost or replaced by a newer one
   // Grows whenever connections or sessions come, go or change: what concerns one connection alone leaves it as it is.

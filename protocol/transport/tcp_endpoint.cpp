@@ -289,11 +289,10 @@ class TcpEndpoint : public Endpoint {
     all.dropped = hub_.dropped_pictures();
     all.waiting = hub_.waiting_pictures();
     all.slowest_bytes_per_second = std::numeric_limits<double>::max();
-    all.h264 = h264_encoder_ != nullptr;
+    all.h264 = h264_encoder_ != nullptr && hub_.all_take_h264();
     for (const auto& watched : links_) {
       if (!hub_.carries_video(watched->link.id())) continue;
       all.all_local = all.all_local && watched->local;
-      all.h264 = all.h264 && hub_.takes_h264(watched->link.id());
       all.slowest_bytes_per_second = std::min(all.slowest_bytes_per_second, delivery_rate(watched->link.socket()));
     }
     return all;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "protocol/capture/session_reader.hpp"
+#include "protocol/h264/h264.hpp"
 #include "protocol/transport/address.hpp"
 #include "protocol/transport/endpoint.hpp"
 #include "protocol/transport/jpeg.hpp"
@@ -224,6 +225,93 @@ TEST(TcpEndpoint, TurnsPicturesIntoJpegWhenAsked) {
   const auto raw = convert(jpeg, PixelCodec::raw_bgr8);
   ASSERT_TRUE(raw) << raw.error().message;
   for (const std::uint8_t value : raw->bytes) ASSERT_NEAR(value, 200, 3);
+}
+
+// Of one shade, which tells which one it is.
+VideoFrame shade(FrameId frame) {
+  VideoFrame picture;
+  picture.stamp = {frame, static_cast<std::int64_t>(frame) * 40'000'000};
+  picture.width = picture.height = 64;
+  picture.stride = 192;
+  picture.bytes.assign(192 * 64, static_cast<std::uint8_t>(20 * (frame % 12)));
+  return picture;
+}
+
+bool is_shown(const VideoFrame& picture, FrameId frame) {
+  const int wanted = shade(frame).bytes[0];
+  return picture.stamp.frame_id == frame && picture.codec == PixelCodec::raw_bgr8 &&
+         std::all_of(picture.bytes.begin(), picture.bytes.end(),
+                     [&](std::uint8_t value) { return std::abs(value - wanted) <= 8; });
+}
+
+LinkOptions with_h264(Role role) {
+  LinkOptions options = options_of(role);
+  use_h264(options);
+  if (role == Role::tracker) options.video_codec = PixelCodec::h264;
+  return options;
+}
+
+// What each viewer gets of the next picture; for a while, since video's own connection comes a little later.
+std::vector<VideoFrame> seen_of_next(FrameId& frame, Endpoint& tracker, const std::vector<Endpoint*>& viewers) {
+  std::vector<VideoFrame> seen;
+  for (int i = 0; i < 100 && seen.size() < viewers.size(); ++i) {
+    seen.clear();
+    tracker.broadcast(shade(++frame));
+    for (Endpoint* viewer : viewers) {
+      for (const VideoFrame& picture : messages<VideoFrame>(viewer->receive(kSecond / 10))) {
+        if (picture.stamp.frame_id == frame) seen.push_back(picture);
+      }
+    }
+  }
+  return seen;
+}
+
+class TcpEndpointH264 : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (make_h264_encoder() == nullptr) GTEST_SKIP() << "this FFmpeg has no libx264";
+  }
+
+  std::unique_ptr<Endpoint> join(const LinkOptions& options) {
+    auto viewer = connect_tcp(tracker_->address(), options, 2 * kSecond);
+    EXPECT_NE(joined(*tracker_), 0U);
+    return std::move(*viewer);
+  }
+
+  const std::unique_ptr<Endpoint> tracker_ = std::move(*listen_tcp("127.0.0.1:0", with_h264(Role::tracker)));
+  FrameId frame_ = 0;
+};
+
+TEST_F(TcpEndpointH264, PicturesArriveRawAndALateViewerSeesTheNextOnes) {
+  const auto viewer = join(with_h264(Role::renderer));
+  for (int i = 0; i < 15; ++i) {
+    const auto seen = seen_of_next(frame_, *tracker_, {viewer.get()});
+    ASSERT_EQ(seen.size(), 1U);
+    EXPECT_TRUE(is_shown(seen[0], frame_));
+  }
+  EXPECT_LE(frame_, 30U);
+  const auto late = join(with_h264(Role::observer));
+  for (int i = 0; i < 15; ++i) {
+    const auto seen = seen_of_next(frame_, *tracker_, {viewer.get(), late.get()});
+    ASSERT_EQ(seen.size(), 2U);
+    EXPECT_TRUE(is_shown(seen[0], frame_));
+    EXPECT_TRUE(is_shown(seen[1], frame_));
+  }
+  EXPECT_LE(frame_, 60U) << "it does not wait for the fiftieth picture";
+}
+
+TEST_F(TcpEndpointH264, WhileAViewerTakesNoneAllGetJpeg) {
+  LinkOptions recorder = options_of(Role::observer);
+  recorder.takes_h264 = true;  // and does not look at it
+  const auto viewer = join(recorder);
+  ASSERT_EQ(seen_of_next(frame_, *tracker_, {viewer.get()}).at(0).codec, PixelCodec::h264);
+  auto old = join(options_of(Role::observer));
+  for (const VideoFrame& picture : seen_of_next(frame_, *tracker_, {viewer.get(), old.get()})) {
+    EXPECT_EQ(picture.codec, PixelCodec::jpeg);
+  }
+  old.reset();
+  collect(*tracker_, [](const auto& all) { return first<PeerLeft>(all) != nullptr; });
+  EXPECT_EQ(seen_of_next(frame_, *tracker_, {viewer.get()}).at(0).codec, PixelCodec::h264);
 }
 
 // The end of a flood must come although the sender does nothing more.
