@@ -7,6 +7,7 @@
 #include "game_controller/notation/fen.hpp"
 #include "game_controller/notation/move_text.hpp"
 #include "game_controller/notation/pdn_tokens.hpp"
+#include "protocol/codec/pdn_text.hpp"
 
 namespace counterpart {
 namespace {
@@ -163,9 +164,11 @@ class PdnReader {
   Result<const Rules*> rules_named() const {
     const std::string type = tag("GameType");
     const std::string number = type.substr(0, type.find(','));
-    if (type.empty() || number == "20") return &international_rules;
-    if (number == "26") return &brazilian_rules;
-    if (number == "21") return &english_rules;
+    if (type.empty()) return &international_rules;
+    for (const Rules* rules : {&international_rules, &brazilian_rules, &english_rules}) {
+      const std::string own = pdn_game_type(rules->name);
+      if (number == own.substr(0, own.find(','))) return rules;
+    }
     return wrong(type_place_, "GameType \"" + type.substr(0, 40) +
                                   "\" is not played here; 20 (international), 26 (Brazilian) and 21 (English) are");
   }

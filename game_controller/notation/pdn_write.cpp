@@ -45,7 +45,7 @@ std::string write_pdn(const PdnTags& tags, const Record& record, GameResult resu
   const Rules& rules = record.rules();
   std::string text = pdn_tag("Event", tags.event) + pdn_tag("Site", tags.site) + pdn_tag("Date", tags.date) +
                      pdn_tag("Round", tags.round) + pdn_tag("White", tags.light) + pdn_tag("Black", tags.dark) +
-                     pdn_tag("Result", pdn_result(result)) + pdn_tag("GameType", std::string(rules.game_type));
+                     pdn_tag("Result", pdn_result(result)) + pdn_tag("GameType", pdn_game_type(rules.name));
   if (!(record.start() == start_position(rules))) text += pdn_tag("FEN", write_fen(rules, record.start()));
   return text + "\n" + move_section(record, {}, result);
 }
@@ -58,7 +58,7 @@ std::string write_pdn(const PdnGame& game) {
     const std::string value = game.tag(name);
     text += pdn_tag(std::string(name), value.empty() ? (name == "Date" ? "????.??.??" : "?") : value);
   }
-  text += pdn_tag("Result", pdn_result(game.result)) + pdn_tag("GameType", std::string(rules.game_type));
+  text += pdn_tag("Result", pdn_result(game.result)) + pdn_tag("GameType", pdn_game_type(rules.name));
   if (!(game.record.start() == start_position(rules))) text += pdn_tag("FEN", write_fen(rules, game.record.start()));
   for (const auto& [name, value] : game.tags) {
     const bool written = std::find(std::begin(roster), std::end(roster), name) != std::end(roster) ||

@@ -31,25 +31,24 @@ struct Rules {
   int kings_only_moves_each;               // art. 6.2: so many moves each without capture or man's move are a draw
   std::array<LoneKingLimit, 2> lone_king;  // art. 6.3 and 6.4; moves_each 0: no such rule
   std::string_view start_fen;
-  std::string_view game_type;  // PDN 3.0; "20" stands for 20,W,10,10,N2,0
 };
 
 // FMJD Annex 1: 2.1 (board), 2.5 (numbers), 3 (moves), 4 (captures), 6 (draws).
 inline constexpr Rules international_rules{
-    RulesId::international,    "international",  10,  4, Side::light, true, true, true, 3, 25,
-    {{{3, 3, 16}, {1, 2, 5}}}, "W:W31-50:B1-20", "20"};
+    RulesId::international,    "international", 10, 4, Side::light, true, true, true, 3, 25,
+    {{{3, 3, 16}, {1, 2, 5}}}, "W:W31-50:B1-20"};
 
 // CBD / FMJD-64: international rules on 32 squares; 20 moves of kings only (art. 94), and 15 and 5 moves for a lone
 // king.
 inline constexpr Rules brazilian_rules{
-    RulesId::brazilian, "brazilian",    8, 3, Side::light, true, true, true, 3, 20, {{{3, 3, 15}, {1, 2, 5}}},
-    "W:W21-32:B1-12",   "26,W,8,8,N2,0"};
+    RulesId::brazilian,        "brazilian",     8, 3, Side::light, true, true, true, 3, 20,
+    {{{3, 3, 15}, {1, 2, 5}}}, "W:W21-32:B1-12"};
 
 // WCDF rules: dark moves first (1.5), men capture forwards (1.17), kings move one square (1.16), any capture may be
 // chosen (1.19), a man that reaches the far row stops there (1.18); 40 moves without progress are a draw (1.32).
 inline constexpr Rules english_rules{
-    RulesId::english, "english",      8, 3, Side::dark, false, false, false, 3, 40, {{{0, 0, 0}, {0, 0, 0}}},
-    "B:W21-32:B1-12", "21,B,8,8,N1,0"};
+    RulesId::english,         "english",       8, 3, Side::dark, false, false, false, 3, 40,
+    {{{0, 0, 0}, {0, 0, 0}}}, "B:W21-32:B1-12"};
 
 // nullptr for a name that is none of the three.
 const Rules* find_rules(std::string_view name);

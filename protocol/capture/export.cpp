@@ -56,17 +56,13 @@ nlohmann::json lens_of(const Intrinsics& k) {
              {"tangential", {k.dist[2], k.dist[3]}}}}}};
 }
 
-std::string game_type(const BoardState& board) {
-  if (board.rules == "brazilian") return "26";
-  return board.rules == "english" ? "21" : "20";
-}
-
 void write_game(const BoardState& board, std::uint64_t round, std::ostream& out) {
   const bool virtual_is_light = board.virtual_side == Side::light;
   const std::string light = virtual_is_light ? "virtual player" : "real player";
   const std::string dark = virtual_is_light ? "real player" : "virtual player";
   out << pdn_tag("Event", "Counterpart") << pdn_tag("Round", std::to_string(round)) << pdn_tag("White", light)
-      << pdn_tag("Black", dark) << pdn_tag("Result", pdn_result(board.result)) << pdn_tag("GameType", game_type(board));
+      << pdn_tag("Black", dark) << pdn_tag("Result", pdn_result(board.result))
+      << pdn_tag("GameType", pdn_game_type(board.rules));
   const bool dark_begins = !board.start_fen.empty() && board.start_fen[0] == 'B';
   if (!board.start_fen.empty()) out << pdn_tag("FEN", board.start_fen);
   PdnLines lines;

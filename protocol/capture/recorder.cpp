@@ -16,20 +16,33 @@ namespace {
 constexpr auto kChunkTime = std::chrono::milliseconds(200);
 constexpr std::size_t kChunkBytes = 1U << 20;
 constexpr std::size_t kMostPendingBytes = 256U << 20;
+constexpr std::size_t kMemoryKept = 32U << 20;  // for what comes next
 
 }  // namespace
 
 struct Recorder::State {
   struct Seen {
     std::int64_t now_ns = 0;
-    Bytes record;  // a WireRecord
+    std::size_t end = 0;  // of its record
   };
 
-  std::unique_ptr<McapWriter> writer;  // of the writing thread alone
+  // Records one behind the other: the thread that sends a message only copies it.
+  struct Batch {
+    Bytes records;  // WireRecords
+    std::vector<Seen> seen;
+
+    void clear() {
+      records.clear();
+      seen.clear();
+      if (records.capacity() > kMemoryKept) records = {};
+    }
+  };
+
+  std::unique_ptr<McapWriter> writer;  // these two are the writing thread's alone
+  Batch batch;
   std::mutex mutex;
   std::condition_variable changed;
-  std::vector<Seen> pending;
-  std::size_t pending_bytes = 0;
+  Batch pending;
   std::uint64_t lost = 0;
   bool ending = false;
   std::optional<Error> error;
@@ -43,20 +56,22 @@ struct Recorder::State {
 
   // Takes everything that waits, as chunks; true: the end was asked for.
   bool write_pending() {
-    std::vector<Seen> batch;
     bool end = false;
     {
       std::unique_lock lock(mutex);
-      changed.wait_for(lock, kChunkTime, [&] { return ending || pending_bytes >= kChunkBytes; });
-      batch.swap(pending);
-      pending_bytes = 0;
+      changed.wait_for(lock, kChunkTime, [&] { return ending || pending.records.size() >= kChunkBytes; });
+      std::swap(batch, pending);
       end = ending;
     }
-    for (const Seen& seen : batch) {
-      add_wire_record(*writer, seen.record, seen.now_ns);
+    const ByteView records(batch.records);
+    std::size_t begin = 0;
+    for (const Seen& seen : batch.seen) {
+      add_wire_record(*writer, records.subspan(begin, seen.end - begin), seen.now_ns);
+      begin = seen.end;
       if (writer->chunk_bytes() >= kChunkBytes) flush();
     }
     flush();
+    batch.clear();
     return end;
   }
 
@@ -100,11 +115,12 @@ Recorder::~Recorder() {
 
 void Recorder::saw(bool incoming, bool video_lane, PeerId peer, const HeaderBytes& header, ByteView body,
                    std::int64_t now_ns) {
-  Bytes record = make_wire_record(incoming, video_lane, peer, header, body);
   bool full = false;
   {
     const std::lock_guard lock(state_->mutex);
-    if (state_->pending_bytes > kMostPendingBytes) {
+    State::Batch& pending = state_->pending;
+    const bool was_full = pending.records.size() >= kChunkBytes;
+    if (pending.records.size() > kMostPendingBytes) {
       ++state_->lost;
       if (!state_->error) {
         state_->error =
@@ -112,9 +128,9 @@ void Recorder::saw(bool incoming, bool video_lane, PeerId peer, const HeaderByte
       }
       return;
     }
-    state_->pending_bytes += record.size();
-    state_->pending.push_back({now_ns, std::move(record)});
-    full = state_->pending_bytes >= kChunkBytes;
+    append_wire_record(pending.records, incoming, video_lane, peer, header, body);
+    pending.seen.push_back({now_ns, pending.records.size()});
+    full = !was_full && pending.records.size() >= kChunkBytes;
   }
   if (full) state_->changed.notify_one();
 }

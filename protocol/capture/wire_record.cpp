@@ -7,16 +7,14 @@ constexpr std::size_t kHead = 8;
 
 }  // namespace
 
-Bytes make_wire_record(bool incoming, bool video_lane, std::uint32_t peer, const HeaderBytes& header, ByteView body) {
-  Bytes record;
-  record.reserve(kHead + kHeaderSize + body.size());
-  append(record, static_cast<std::uint8_t>(incoming ? 1 : 2));
-  append(record, static_cast<std::uint8_t>(video_lane ? 2 : 1));
-  append(record, std::uint16_t{0});
-  append(record, peer);
-  record.insert(record.end(), header.begin(), header.end());
-  record.insert(record.end(), body.begin(), body.end());
-  return record;
+void append_wire_record(Bytes& out, bool incoming, bool video_lane, std::uint32_t peer, const HeaderBytes& header,
+                        ByteView body) {
+  append(out, static_cast<std::uint8_t>(incoming ? 1 : 2));
+  append(out, static_cast<std::uint8_t>(video_lane ? 2 : 1));
+  append(out, std::uint16_t{0});
+  append(out, peer);
+  out.insert(out.end(), header.begin(), header.end());
+  out.insert(out.end(), body.begin(), body.end());
 }
 
 Result<WireRecord> read_wire_record(ByteView record) {

@@ -14,7 +14,9 @@ struct WireRecord {
   ByteView body;  // into the record that was read
 };
 
-Bytes make_wire_record(bool incoming, bool video_lane, std::uint32_t peer, const HeaderBytes& header, ByteView body);
+// Behind what `out` holds already.
+void append_wire_record(Bytes& out, bool incoming, bool video_lane, std::uint32_t peer, const HeaderBytes& header,
+                        ByteView body);
 
 // Checks lengths and the message's own CRC.
 [[nodiscard]] Result<WireRecord> read_wire_record(ByteView record);

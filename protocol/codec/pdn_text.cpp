@@ -32,6 +32,12 @@ std::string pdn_result(GameResult result) {
   return "*";
 }
 
+std::string pdn_game_type(std::string_view rules) {
+  if (rules == "brazilian") return "26,W,8,8,N2,0";
+  if (rules == "english") return "21,B,8,8,N1,0";
+  return "20";  // stands for 20,W,10,10,N2,0
+}
+
 void PdnLines::word(std::string word) {
   if (word.empty()) return;
   if (word.front() == '%' && (column_ == 0 || column_ + 1 + word.size() > line_width)) {

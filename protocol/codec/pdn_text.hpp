@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 #include "protocol/vocabulary/game.hpp"
 
@@ -14,6 +15,9 @@ std::string pdn_tag(const std::string& name, const std::string& value);
 
 // "2-0", "0-2", "1-1", or "*" for a game that is not over.
 std::string pdn_result(GameResult result);
+
+// The tag GameType of "international", "brazilian" or "english"; its number stands before the first comma.
+std::string pdn_game_type(std::string_view rules);
 
 // Words of a move section in lines of at most 79 characters, longer words apart.
 class PdnLines {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <set>
 
 #include "vhd_renderer/motion/director_state.hpp"
 #include "vhd_renderer/motion/pose.hpp"

@@ -44,7 +44,9 @@ std::vector<std::pair<std::string, Bytes>> golden_messages() {
 Bytes as_record(const Bytes& message) {
   HeaderBytes header{};
   std::copy_n(message.begin(), header.size(), header.begin());
-  return make_wire_record(false, false, 1, header, ByteView(message).subspan(kHeaderSize));
+  Bytes record;
+  append_wire_record(record, false, false, 1, header, ByteView(message).subspan(kHeaderSize));
+  return record;
 }
 
 // How kWhole was written.

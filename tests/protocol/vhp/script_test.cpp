@@ -144,7 +144,9 @@ std::string small_capture(const std::string& path, const std::string& last_move)
     Header header;
     header.type = static_cast<std::uint16_t>(type_of(message));
     header.seq = is_kept(type_of(message)) ? ++seq : 0;
-    add_wire_record(**writer, make_wire_record(false, false, 1, seal(header, body), body), time_ns += 1'000'000);
+    Bytes record;
+    append_wire_record(record, false, false, 1, seal(header, body), body);
+    add_wire_record(**writer, record, time_ns += 1'000'000);
     EXPECT_TRUE((*writer)->write_chunk());
   };
   Intrinsics lens{1, 720, 576, 700, 700, 359.5, 287.5, {}};
