@@ -216,8 +216,8 @@ class Lane:
 class Client:
     """A session. A lost link is taken up again: kept messages of both sides arrive once and in order."""
 
-    def __init__(self, address, role="observer", want_video=False, token=None, tls_file=None):
-        self.address, self.role, self.want_video = address, role, want_video
+    def __init__(self, address, role="observer", want_video=False, token=None, tls_file=None, want_debug=False):
+        self.address, self.role, self.want_video, self.want_debug = address, role, want_video, want_debug
         self.token, self.tls_file = token, tls_file
         self.session, self.seq, self.waiting = 0, 0, []  # waiting: kept messages that are not acknowledged
         self.received = {"main": 0, "video": 0}
@@ -233,7 +233,7 @@ class Client:
     def _hello(self, lane):
         return {"version_min": 1, "version_max": 1, "role": self.role, "software": "counterpart_client.py",
                 "resume_session": self.session, "last_seq": self.received[lane], "video": lane == "video",
-                "want_video": self.want_video, "lockstep": False}
+                "want_video": self.want_video, "want_debug": self.want_debug, "lockstep": False}
 
     def _connect(self):
         self.main = Lane(self.address, self._hello("main"), self.token, self.tls_file)

@@ -22,6 +22,7 @@ void read_fields(Fields& f, Hello& m) {
   f.need("version_min", m.version_min, {1, 255}).need("version_max", m.version_max, {1, 255}).need("role", m.role);
   f.maybe("software", m.software).maybe("resume_session", m.resume_session).maybe("last_seq", m.last_seq);
   f.maybe("video", m.video).maybe("want_video", m.want_video).maybe("lockstep", m.lockstep).maybe("h264", m.h264);
+  f.maybe("want_debug", m.want_debug);
   f.require(m.version_min <= m.version_max, "version_min", "must not be above version_max");
 }
 

@@ -87,6 +87,7 @@ json to_json(const Hello& m) {
            {"want_video", m.want_video},
            {"lockstep", m.lockstep}};
   if (m.h264) out["h264"] = true;
+  if (m.want_debug) out["want_debug"] = true;
   return out;
 }
 

@@ -397,7 +397,7 @@ void Hub::broadcast(const Outgoing& message, std::int64_t now_ns) {
 
 void Hub::push(Peer& peer, Outgoing message, std::int64_t now_ns) {
   const bool video = message.type == MessageType::video;
-  if (video && !peer.want_video) return;
+  if (!wants(peer, message.type)) return;
   if (message.chain != Chain::none && !peer.takes_h264) {
     ++peer.counts.dropped;
     return;
@@ -438,6 +438,16 @@ bool Hub::wants_read(ConnectionId id) const {
 bool Hub::carries_video(ConnectionId id) const {
   const auto found = connections_.find(id);
   return found != connections_.end() && found->second.stage == Stage::open && found->second.lane == LaneName::video;
+}
+
+bool Hub::wants(const Peer& peer, MessageType type) {
+  if (type == MessageType::video) return peer.want_video;
+  return type != MessageType::debug || peer.want_debug;
+}
+
+bool Hub::wanted(MessageType type) const {
+  if (type != MessageType::video && type != MessageType::debug) return true;
+  return std::any_of(peers_.begin(), peers_.end(), [&](const auto& known) { return wants(known.second, type); });
 }
 
 bool Hub::all_take_h264() const {

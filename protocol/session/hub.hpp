@@ -68,7 +68,8 @@ class Hub {
   bool overdue(ConnectionId connection, std::int64_t now_ns) const;
   bool exists(ConnectionId connection) const { return connections_.count(connection) > 0; }
   bool carries_video(ConnectionId connection) const;
-  bool all_take_h264() const;  // who is there and wants pictures
+  bool wanted(MessageType type) const;                        // false: nobody has asked for it
+  bool all_take_h264() const;                                 // who is there and wants pictures
   ConnectionId carrier(PeerId peer, MessageType type) const;  // on which messages of this type go to it; 0: none now
   bool keeps(PeerId peer, MessageType type) const;            // none of these is lost or replaced by a newer one
   // Grows whenever connections or sessions come, go or change: what concerns one connection alone leaves it as it is.
@@ -112,6 +113,7 @@ class Hub {
     Role role = Role::observer;
     std::string software;
     bool want_video = false;
+    bool want_debug = false;
     bool lockstep = false;
     bool takes_h264 = false;
     Lane main, video;
@@ -152,6 +154,7 @@ class Hub {
     std::int64_t wait_ns = 0;
   };
 
+  static bool wants(const Peer& peer, MessageType type);
   Peer* peer_of(const Connection& connection);
   Lane& lane_of(Peer& peer, LaneName lane) { return lane == LaneName::main ? peer.main : peer.video; }
   ConnectionId add_connection(std::int64_t now_ns);

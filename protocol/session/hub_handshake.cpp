@@ -14,6 +14,7 @@ void Hub::begin_hello(ConnectionId id, Connection& connection, std::int64_t now_
   hello.want_video = options_.want_video;
   hello.lockstep = options_.lockstep;
   hello.h264 = options_.takes_h264;
+  hello.want_debug = options_.want_debug;
   if (const auto peer = peers_.find(server_peer_); peer != peers_.end()) {
     hello.resume_session = peer->second.session;
     hello.last_seq = lane_of(peer->second, connection.lane).last_received();
@@ -86,7 +87,10 @@ Result<void> Hub::admit(ConnectionId id, Connection& connection, std::int64_t no
   Peer& peer = resumed ? peers_.at(known->second)
                        : make_peer(random_session(), hello.role, hello.software, hello.lockstep && options_.lockstep);
   peer.want_video = hello.want_video || hello.video;
-  peer.takes_h264 = hello.h264;
+  if (!hello.video) {
+    peer.want_debug = hello.want_debug;
+    peer.takes_h264 = hello.h264;
+  }
   Welcome welcome;
   welcome.version = *agree_on_version(hello.version_min, hello.version_max);
   welcome.session = peer.session;
@@ -143,6 +147,7 @@ Result<void> Hub::on_welcome(ConnectionId id, Connection& connection, const Welc
   if (!resumed && known != peers_.end()) forget_peer(server_peer_);
   Peer& peer = resumed ? known->second : make_peer(welcome.session, welcome.role, welcome.software, welcome.lockstep);
   peer.want_video = options_.want_video;
+  peer.want_debug = true;  // a server takes what comes
   server_peer_ = peer.id;
   last_refusal_.reset();
   last_reported_refusal_.clear();

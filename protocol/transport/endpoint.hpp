@@ -85,6 +85,7 @@ struct LinkOptions {
   // (transport/video_choice.hpp). h264 goes out as JPEG while there is a viewer who does not take it.
   std::optional<PixelCodec> video_codec;
   bool want_video = true;
+  bool want_debug = false;  // DEBUG, 50 kB a frame
   bool takes_h264 = false;  // pictures may come in H.264
   VideoCoding h264;         // without an encoder none is sent; without a decoder what comes is handed on as it is
   std::int64_t heartbeat_ns = 500'000'000;

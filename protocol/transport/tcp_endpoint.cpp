@@ -176,6 +176,7 @@ class TcpEndpoint : public Endpoint {
 
   void broadcast(const Message& message) override {
     std::unique_lock lock(mutex_);
+    if (!hub_.wanted(type_of(message))) return;
     auto outgoing = prepare(message, lock);
     if (!outgoing) return refuse(0, outgoing.error());
     const std::int64_t now_ns = monotonic_ns();

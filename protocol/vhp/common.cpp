@@ -24,7 +24,8 @@ Result<std::unique_ptr<Endpoint>> open_link(const LinkArguments& arguments, Role
   options.token_file = arguments.token_file;
   options.tls_file = arguments.tls_file;
   options.want_video = want_video;
-  options.takes_h264 = true;  // nobody looks at the pictures here
+  options.takes_h264 = true;                  // nobody looks at the pictures here
+  options.want_debug = !record_file.empty();  // a capture holds everything
   options.record_file = record_file;
   return connect_tcp(arguments.address, options, static_cast<std::int64_t>(arguments.patience_s * 1e9));
 }

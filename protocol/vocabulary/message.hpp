@@ -61,6 +61,7 @@ struct Hello {
   bool want_video = false;           // a second connection for VIDEO will follow
   bool lockstep = false;             // no frame dropped; FRAME_DONE paces the camera
   bool h264 = false;                 // pictures may come in H.264, besides raw and JPEG
+  bool want_debug = false;           // DEBUG is sent
 
   friend bool operator==(const Hello&, const Hello&) = default;
 };

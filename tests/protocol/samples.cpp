@@ -131,15 +131,15 @@ Message feedback() {
 
 std::vector<std::pair<std::string, Message>> sample_messages() {
   Hello hello{1, 3, Role::director, "client 2.0", 42, 7, true, true, true};
-  Hello takes_h264 = hello;
-  takes_h264.h264 = true;
+  Hello asking = hello;
+  asking.h264 = asking.want_debug = true;
   Welcome welcome{1, 9007199254740993U, Role::renderer, "server 1.0", true, 8, true};
   Intrinsics intrinsics{4, 720, 576, 700.5, 701.25, 360, 288, {0.5, -0.25, 0.125, 0.0625, -1}};
   Navigate navigate{"seat", {{0, -1, 0}}, 1.5, "hurry"};
   Gaze gaze{GazeTarget::point, 28, "light_31", {0.5, 0.25, 0}, 2};
   return {
       {"hello", hello},
-      {"hello_h264", takes_h264},
+      {"hello_asking", asking},
       {"welcome", welcome},
       {"heartbeat", Heartbeat{3, 4}},
       {"error", ErrorReport{6, "another version"}},

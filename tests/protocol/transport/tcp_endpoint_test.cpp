@@ -227,6 +227,24 @@ TEST(TcpEndpoint, TurnsPicturesIntoJpegWhenAsked) {
   for (const std::uint8_t value : raw->bytes) ASSERT_NEAR(value, 200, 3);
 }
 
+// A line that is slow enough would have no room for poses beside it.
+TEST(TcpEndpoint, DebugViewsGoToWhoAskedForThem) {
+  auto tracker = listen_tcp("127.0.0.1:0", options_of(Role::tracker));
+  LinkOptions asking = options_of(Role::observer);
+  asking.want_debug = true;
+  auto curious = connect_tcp((*tracker)->address(), asking, 2 * kSecond);
+  joined(**tracker);
+  auto other = connect_tcp((*tracker)->address(), options_of(Role::observer), 2 * kSecond);
+  joined(**tracker);
+  DebugView view;
+  view.stamp = {7, 7};
+  (*tracker)->broadcast(view);
+  (*tracker)->broadcast(FrameDone{{7, 7}});  // comes after it
+  const auto is_over = [](const auto& all) { return !messages<FrameDone>(all).empty(); };
+  EXPECT_EQ(messages<DebugView>(collect(**curious, is_over)), std::vector<DebugView>{view});
+  EXPECT_TRUE(messages<DebugView>(collect(**other, is_over)).empty());
+}
+
 // Of one shade, which tells which one it is.
 VideoFrame shade(FrameId frame) {
   VideoFrame picture;
