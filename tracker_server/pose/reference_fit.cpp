@@ -24,7 +24,7 @@ constexpr int points_a_square = 4;   // along a side
 constexpr double rim_squares = 0.4;  // round the playing surface, looked at, too: the border
 constexpr int exposures = 9;         // of which a smeared picture is made
 constexpr std::size_t fewest_in_both = 150;
-constexpr double nearest_m = 1e-3;
+constexpr double least_depth_m = 1e-3;
 
 // Brightness that agrees within so many standard deviations (Tukey), and the least of those: noise, light.
 constexpr double agrees = 4.7, least_sigma = 3;
@@ -105,12 +105,12 @@ std::vector<BoardPoint> expect(const ReferenceView& reference, const BoardGeomet
       const Vector3d p_B((col + 0.5) * D / points_a_square, (row + 0.5) * D / points_a_square, 0);
       const Vector3d ray = X_CB * p_B;
       float sum = 0;
-      bool seen = ray.z() > nearest_m;
+      bool seen = ray.z() > least_depth_m;
       for (int k = 0; seen && k < exposures; ++k) {
         const Vector3d q = back[static_cast<std::size_t>(k)] * ray;
         const Vector3d q_C = reference.X_CB * Vector3d(q.x() / q.z(), q.y() / q.z(), 0);
         float value = 0;
-        seen = q_C.z() > nearest_m;
+        seen = q_C.z() > least_depth_m;
         if (!seen) break;
         const Vector2d at = to_level(project(reference.camera, q_C), level);
         seen = sample(grey, at.x(), at.y(), value);
@@ -135,7 +135,7 @@ std::vector<Look> look(const cv::Mat1b& grey, int level, const Intrinsics& camer
   for (const BoardPoint& point : points) {
     const Vector3d r_C = X_CB.linear() * point.p_B;
     const Vector3d p_C = r_C + X_CB.translation();
-    if (!(p_C.z() > nearest_m)) continue;
+    if (!(p_C.z() > least_depth_m)) continue;
     const Vector2d at = to_level(project(camera, p_C), level);
     float here = 0, left = 0, right = 0, above = 0, below = 0;
     if (!sample(grey, at.x(), at.y(), here) || !sample(grey, at.x() - 1, at.y(), left) ||
@@ -237,7 +237,7 @@ bool improve(const std::vector<Look>& looks, Light& light, ReferenceFit& fit) {
   fit.X_CB = moved(fit.X_CB, step.head<3>(), step.segment<3>(3));
   light.gain += step(6);
   light.bias += step(7);
-  return fit.X_CB.translation().z() > nearest_m;
+  return fit.X_CB.translation().z() > least_depth_m;
 }
 
 }  // namespace

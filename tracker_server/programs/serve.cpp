@@ -1,17 +1,16 @@
 #include "tracker_server/pipeline/serve.hpp"
 
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
 #include "protocol/daemon/picture_memory.hpp"
 #include "protocol/daemon/stop_signal.hpp"
 #include "protocol/h264/h264.hpp"
+#include "tracker_server/pipeline/board_file.hpp"
 #include "tracker_server/programs/corners.hpp"
 #include "tracker_server/programs/programs.hpp"
 
@@ -30,33 +29,12 @@ struct Arguments {
   double square_size_m = 0;
 };
 
-// board.json: any of the fields of BoardGeometry by their names.
-Result<void> read_board(const std::string& file, BoardGeometry& board) {
-  std::ifstream in(file);
-  if (!in) return failure(ErrorCode::not_found, "cannot read the board's description '" + file + "'");
-  const auto json = nlohmann::json::parse(in, nullptr, false);
-  if (!json.is_object()) return failure(ErrorCode::bad_format, "'" + file + "' is not a JSON object");
-  const auto number = [&](const char* key, auto& value) {
-    if (json.contains(key) && json[key].is_number()) json[key].get_to(value);
-  };
-  number("squares", board.squares);
-  number("square_size_m", board.square_size_m);
-  number("border_m", board.border_m);
-  number("thickness_m", board.thickness_m);
-  number("piece_radius_m", board.piece_radius_m);
-  number("piece_height_m", board.piece_height_m);
-  if (json.value("played_on", "dark") == "light") board.played_on = SquareColour::light;
-  const bool sane =
-      (board.squares == 8 || board.squares == 10) && board.square_size_m > 0.005 && board.square_size_m < 1;
-  if (!sane)
-    return failure(ErrorCode::invalid_argument, "'" + file + "': squares must be 8 or 10, square_size_m 0.005 to 1");
-  return {};
-}
-
 Result<void> complete(Arguments& arguments) {
   ServeOptions& serve = arguments.serve;
   if (!arguments.board_file.empty()) {
-    if (auto read = read_board(arguments.board_file, serve.observe.board); !read) return read;
+    const auto board = read_board_file(arguments.board_file);
+    if (!board) return tl::make_unexpected(board.error());
+    serve.observe.board = *board;
   }
   if (arguments.square_size_m > 0) serve.observe.board.square_size_m = arguments.square_size_m;
   if (arguments.init.rfind("corners=", 0) == 0) {

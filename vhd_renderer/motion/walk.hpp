@@ -57,7 +57,6 @@ class Walk {
   float leg_m_ = 0.8F;
   float hip_height_m_ = 0.86F;
   float ball_forward_m_ = 0.12F;
-  float ball_out_m_ = 0;
   double duration_s_ = 0;
 };
 
