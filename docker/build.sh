@@ -5,21 +5,23 @@
 #   docker/build.sh [DEBIAN-MIRROR]      without one: the one that debootstrap knows
 set -eu
 cd "$(dirname "$0")/.."
-run="buildah --storage-driver vfs"
 base=docker.io/library/debian:bookworm-slim
-if ! $run inspect --type image "$base" >/dev/null 2>&1; then
+if ! buildah inspect --type image "$base" >/dev/null 2>&1; then
   root=$(mktemp -d)
   trap 'rm -rf "$root"' EXIT
   debootstrap --variant=minbase bookworm "$root" ${1:+"$1"}
-  container=$($run from scratch)
-  $run add "$container" "$root" / >/dev/null
-  $run commit "$container" "$base" >/dev/null
-  $run rm "$container" >/dev/null
+  # Like the published image: packages that are installed leave no copies behind.
+  echo 'DPkg::Post-Invoke { "rm -f /var/cache/apt/archives/*.deb"; };' > "$root/etc/apt/apt.conf.d/no-copies"
+  rm -rf "$root"/var/cache/apt/archives/*.deb "$root"/var/lib/apt/lists/*
+  container=$(buildah from scratch)
+  buildah add "$container" "$root" / >/dev/null
+  buildah commit "$container" "$base" >/dev/null
+  buildah rm "$container" >/dev/null
 fi
 for program in tracker_server vhd_renderer; do
   # The docker format, since the OCI one knows no health check.
-  $run build --layers --format docker --isolation chroot --ignorefile "docker/$program.Dockerfile.dockerignore" -f "docker/$program.Dockerfile" -t "counterpart/$program" .
-  container=$($run from "counterpart/$program")
-  $run run --isolation chroot --user counterpart "$container" -- "$program" --version
-  $run rm "$container" >/dev/null
+  buildah build --layers --format docker --isolation chroot --ignorefile "docker/$program.Dockerfile.dockerignore" -f "docker/$program.Dockerfile" -t "counterpart/$program" .
+  container=$(buildah from "counterpart/$program")
+  buildah run --isolation chroot --user counterpart "$container" -- "$program" --version
+  buildah rm "$container" >/dev/null
 done
