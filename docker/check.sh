@@ -29,6 +29,7 @@ failed=0
 
 clean_up() {
   trap - EXIT INT TERM
+  for name in tracker renderer; do podman logs "${me}_$name" > "$folder/$name.log" 2>&1 || true; done
   podman rm --force --time 2 $tracker $renderer >/dev/null 2>&1 || true
   podman volume rm $tracker $renderer >/dev/null 2>&1 || true
   [ -z "${stage_process:-}" ] || kill "$stage_process" 2>/dev/null || true
@@ -44,7 +45,9 @@ say() {
   shift
   if "$@" >/dev/null 2>&1; then echo "ok      $what"; else echo "FAILED  $what"; failed=1; fi
 }
-not() { ! "$@"; }
+# Only of a container that runs.
+cannot() { podman exec "$1" true && ! podman exec "$@"; }
+unhealthy() { ! healthy "$1"; }
 
 # within SECONDS COMMAND...: tries until it succeeds.
 within() {
@@ -70,20 +73,19 @@ cable() { # HOST ADDRESS HOST ADDRESS
 daemon() { # NAME IMAGE COMMAND...: one service of compose.yaml; podman's timers for health checks would need systemd
   name=$1 image=$2
   shift 2
-  podman run --detach --name "$name" --network "ns:/run/netns/$name" --read-only --cap-drop all --security-opt no-new-privileges \
-    --tmpfs /tmp --tmpfs /run/counterpart --volume "$name:/data" --volume "$work/token:/run/secrets/counterpart_token:ro" \
+  podman --log-level fatal run --detach --name "$name" --network "ns:/run/netns/$name" --read-only --cap-drop all --security-opt no-new-privileges \
+    --tmpfs /tmp --tmpfs /run/counterpart:U,mode=700 --volume "$name:/data" --volume "$work/token:/run/secrets/counterpart_token:ro" \
     --ulimit nofile=1024:1024 --ulimit nproc=1024:1024 --health-interval disable "counterpart/$image" "$@" >/dev/null
 }
 
-inside() { podman exec "$@"; }
 healthy() { timeout 10 podman healthcheck run "$1"; }
 process() { podman inspect --format '{{.State.Pid}}' "$1"; }
 state() { ip netns exec $renderer curl --silent --max-time 5 http://10.99.2.2:8080/state.json; }
 composited() { state | sed -n 's/.*"frames":\([0-9]*\).*/\1/p'; }
 composites() { [ "$(composited)" -gt "${1:-0}" ]; }
 ended_with() { [ "$(podman inspect --format '{{.State.ExitCode}}' "$1")" = "$2" ]; }
-no_powers() { inside "$1" grep -q '^CapEff:[[:space:]]*0*$' /proc/1/status && inside "$1" grep -q '^NoNewPrivs:[[:space:]]*1' /proc/1/status; }
-is_user() { [ "$(inside "$1" sh -c 'stat -c %u /proc/1')" = 10001 ]; }
+no_powers() { podman exec "$1" grep -q '^CapEff:[[:space:]]*0*$' /proc/1/status && podman exec "$1" grep -q '^NoNewPrivs:[[:space:]]*1' /proc/1/status; }
+is_user() { [ "$(podman exec "$1" sh -c 'stat -c %u /proc/1')" = 10001 ]; }
 
 for host in $camera $tracker $renderer; do ip netns add $host; ip -n $host link set lo up; done
 cable $camera 1.2 $tracker 1.1
@@ -102,34 +104,32 @@ daemon $renderer vhd_renderer vhd_renderer serve --tracker 10.99.2.1:7401 --list
 say "the tracker is healthy" within $seconds healthy $tracker
 say "the renderer is healthy" within $seconds healthy $renderer
 say "the renderer composites the tracker's frames" within $seconds composites 250
+podman exec $renderer true || { podman logs --tail 5 $renderer >&2; die "the renderer has ended"; }
 for host in $tracker $renderer; do
   say "$host runs as user 10001" is_user $host
   say "$host has no capabilities and gets none" no_powers $host
-  say "$host cannot write to its root file system" not inside $host touch /usr/local/bin/new /home/counterpart/new
-  say "$host keeps what it writes to /data" inside $host touch /data/new
+  say "$host cannot write to its root file system" cannot $host touch /usr/local/bin/new /home/counterpart/new
+  say "$host keeps what it writes to /data" podman exec $host touch /data/new
 done
-say "nobody joins the tracker without the token" not inside $renderer vhp monitor 10.99.2.1:7401 --for 0.2
+say "nobody joins the tracker without the token" cannot $renderer vhp monitor 10.99.2.1:7401 --for 0.2
 echo "        $(state | head -c 600)"
 say "the mirror page shows a picture" ip netns exec $renderer curl --silent --fail --max-time 5 -o "$folder/mirror.jpg" http://10.99.2.2:8080/frame.jpg
 
 # A daemon that hangs is ill, one that goes on is well again; then the tracker's end and return.
 kill -STOP "$(process $tracker)"
-say "a tracker that hangs is not healthy" not healthy $tracker
+say "a tracker that hangs is not healthy" unhealthy $tracker
 kill -CONT "$(process $tracker)"
 say "it is again when it goes on" within 10 healthy $tracker
-podman stop --time 10 $tracker >/dev/null
+podman --log-level fatal stop --time 10 $tracker >/dev/null
 say "the tracker ends cleanly on SIGTERM" ended_with $tracker 0
 say "the renderer alone is healthy" healthy $renderer
-podman start $tracker >/dev/null
+podman --log-level fatal start $tracker >/dev/null
 before=$(composited)
 say "the game goes on when the tracker is back" within $seconds composites $((before + 50))
-podman kill --signal INT $renderer >/dev/null
-podman wait $renderer >/dev/null
+podman kill --signal INT $renderer >/dev/null && podman wait $renderer >/dev/null
 say "the renderer ends cleanly on Ctrl-C" ended_with $renderer 0
-podman stop --time 10 $tracker >/dev/null
+podman --log-level fatal stop --time 10 $tracker >/dev/null
 say "and the tracker without it" ended_with $tracker 0
-say "a container whose daemon has ended is not healthy" not healthy $tracker
-podman logs $tracker > "$folder/tracker.log" 2>&1
-podman logs $renderer > "$folder/renderer.log" 2>&1
+say "a container whose daemon has ended is not healthy" unhealthy $tracker
 echo "        $folder: mirror.jpg, tracker.log, renderer.log, stage.log"
 exit $failed

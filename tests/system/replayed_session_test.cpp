@@ -1,5 +1,6 @@
 // A whole game on two hosts is captured on both; each capture then plays the other side to a fresh program, which must
-// do the same again. Needs root. The short form begins with few virtual pieces, COUNTERPART_LONG=1 with all.
+// do the same again. Needs root. He begins with few virtual pieces, with one more
+// under COUNTERPART_LONG=1.
 #include <algorithm>
 #include <fstream>
 #include <sstream>
@@ -17,12 +18,12 @@ namespace {
 using namespace testing_support;
 
 // Frames; in both the game is over some seconds before.
-constexpr int kFew = 600, kAll = 6'000;
+constexpr int kShort = 360, kLong = 700;
 
-constexpr char kFirstPosition[] = "B:W21,22,23,24,25,26,27,28,29,30,31,32:B1,2,3,4,5,6,7,8,9,10,11,12";
-constexpr char kFewPieces[] = "B:W22,23:B1,2,3,4,5,6,7,8,9,10,11,12";
+constexpr char kOnePiece[] = "B:W18:B1,2,3,4,5,6,7,8,9,10,11,12";      // both sides capture
+constexpr char kTwoPieces[] = "B:W22,23:B1,2,3,4,5,6,7,8,9,10,11,12";  // four moves of each side
 
-const seconds kPatience{scaled(400, 4'000)};
+const seconds kPatience{scaled(400, 800)};
 
 std::string bytes_of(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
@@ -90,8 +91,8 @@ class ReplayedSession : public OnTwoHosts {
                 "--level",   "1",
                 "--squares", "8",
                 "--rules",   "english",
-                "--fen",     scaled(kFewPieces, kFirstPosition),
-                "--frames",  std::to_string(scaled(kFew, kAll)),
+                "--fen",     scaled(kOnePiece, kTwoPieces),
+                "--frames",  std::to_string(scaled(kShort, kLong)),
                 "--record",  folder_.path(record)};
     words.insert(words.end(), more.begin(), more.end());
     return words;
