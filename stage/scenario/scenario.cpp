@@ -37,7 +37,8 @@ class Node {
     if (!value_.is_object()) return complain("an object");
     for (const auto& [name, child] : value_.items()) {
       const Node node(child, path_ + "/" + name, source_);
-      const auto known = std::find_if(keys.begin(), keys.end(), [&](const auto& key) { return key.first == name; });
+      const auto known =
+          std::find_if(keys.begin(), keys.end(), [&wanted = name](const auto& key) { return key.first == wanted; });
       if (known == keys.end()) {
         std::string names;
         for (const auto& key : keys) names += (names.empty() ? "" : ", ") + key.first;

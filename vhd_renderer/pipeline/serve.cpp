@@ -195,16 +195,14 @@ Result<void> RendererDaemon::show(PairedFrame pair) {
 // The page gets the picture and what is said; what people press there goes to the tracker.
 void RendererDaemon::mirror_on_web(const cv::Mat& mirror, const PoseEstimate& pose, const Performance& performance) {
   const StepTimer timer(times_, "web");
-  if (web_->watched()) {
-    VideoFrame picture;
-    picture.stamp = pose.stamp;
-    picture.width = static_cast<std::uint16_t>(mirror.cols);
-    picture.height = static_cast<std::uint16_t>(mirror.rows);
-    picture.stride = static_cast<std::uint32_t>(mirror.cols) * 3;
-    picture.bytes.resize(std::size_t{picture.stride} * picture.height);
-    mirror.copyTo(cv::Mat(mirror.rows, mirror.cols, CV_8UC3, picture.bytes.data()));
-    web_->show(std::move(picture));
-  }
+  VideoFrame picture;
+  picture.stamp = pose.stamp;
+  picture.width = static_cast<std::uint16_t>(mirror.cols);
+  picture.height = static_cast<std::uint16_t>(mirror.rows);
+  picture.stride = static_cast<std::uint32_t>(mirror.cols) * 3;
+  picture.bytes.resize(std::size_t{picture.stride} * picture.height);
+  mirror.copyTo(cv::Mat(mirror.rows, mirror.cols, CV_8UC3, picture.bytes.data()));
+  web_->show(std::move(picture));
   web_->subtitle(performance.subtitle);
   web_->speech(performance.sound);
   for (const Feedback& feedback : performance.feedback) web_->feedback(feedback);

@@ -5,7 +5,8 @@
 
 namespace counterpart {
 
-inline int scaled(int in_short, int in_long) {
+template <typename Value>
+Value scaled(Value in_short, Value in_long) {
   return std::getenv("COUNTERPART_LONG") == nullptr ? in_short : in_long;
 }
 

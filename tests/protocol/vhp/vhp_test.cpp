@@ -11,6 +11,7 @@
 
 #include "protocol/transport/endpoint.hpp"
 #include "tests/support/link_options.hpp"
+#include "tests/support/program.hpp"
 
 namespace counterpart {
 namespace {
@@ -149,7 +150,8 @@ TEST(Vhp, ControlsAreTakenAndMonitorCounts) {
 
 // What a tracker said is played from a capture to a renderer that has never seen it.
 TEST(Vhp, ReplaysATrackerFromACapture) {
-  const std::string file = testing::TempDir() + "counterpart_replay.mcap";
+  const testing_support::TemporaryFolder folder;
+  const std::string file = folder.path("replay.mcap");
   std::vector<Command> sent;
   {
     auto tracker = listen_tcp("127.0.0.1:0", options_of(Role::tracker));
