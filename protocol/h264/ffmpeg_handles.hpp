@@ -1,8 +1,11 @@
-// FFmpeg's objects, freed when they go.
+// FFmpeg's objects, freed when they go, and its errors in words.
 #pragma once
+
+#include <string>
 
 extern "C" {
 #include <libavcodec/avcodec.h>
+#include <libavutil/error.h>
 #include <libswscale/swscale.h>
 }
 
@@ -20,5 +23,11 @@ struct PacketDeleter {
 struct ScalerDeleter {
   void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
 };
+
+inline std::string ffmpeg_reason(int code) {
+  char reason[AV_ERROR_MAX_STRING_SIZE] = {};
+  av_strerror(code, reason, sizeof reason);
+  return reason;
+}
 
 }  // namespace counterpart

@@ -16,12 +16,6 @@ constexpr int kPicturesPerSecond = 25;  // what x264 is told; the wish counts by
 constexpr int kBurst = 6;               // pictures' worth that one may take: a quarter of a second
 constexpr int kMostBuilding = 50;       // pictures: whoever finds a capture cut anywhere waits no longer
 
-std::string reason_of(int code) {
-  char reason[AV_ERROR_MAX_STRING_SIZE] = {};
-  av_strerror(code, reason, sizeof reason);
-  return reason;
-}
-
 const AVCodec* find_encoder() {
   return avcodec_find_encoder_by_name("libx264");
 }
@@ -117,7 +111,7 @@ class H264Encoder final : public VideoEncoder {
 
   Result<VideoFrame> trouble(int code) {
     width_ = height_ = 0;  // the next picture begins anew
-    return failure(ErrorCode::internal, "a picture cannot be turned into H.264: " + reason_of(code));
+    return failure(ErrorCode::internal, "a picture cannot be turned into H.264: " + ffmpeg_reason(code));
   }
 
   std::unique_ptr<AVCodecContext, CodecDeleter> codec_;

@@ -87,6 +87,14 @@ struct Watch {
   int held = 0;                                   // messages of a flood that wait to be written together
 };
 
+// Who sees pictures that build on each other.
+struct Viewers {
+  ConnectionId newest = 0;  // its video connection
+  std::uint64_t dropped = 0;
+
+  friend bool operator==(const Viewers&, const Viewers&) = default;
+};
+
 // Sockets are touched only with the mutex held; handlers run on the endpoint's own thread.
 class TcpEndpoint : public Endpoint {
  public:
@@ -238,12 +246,11 @@ class TcpEndpoint : public Endpoint {
 
   // Somebody lacks pictures that the next one would build on.
   bool breaks_chain() {
-    ConnectionId newest = 0;
+    Viewers now{0, hub_.dropped_pictures()};
     for (const auto& watched : links_) {
-      if (hub_.carries_video(watched->link.id())) newest = watched->link.id();
+      if (hub_.carries_video(watched->link.id())) now.newest = watched->link.id();
     }
-    const std::uint64_t dropped = hub_.dropped_pictures();
-    return std::exchange(newest_viewer_, newest) != newest || std::exchange(dropped_seen_, dropped) != dropped;
+    return std::exchange(chained_for_, now) != now;
   }
 
   // What came in H.264, raw. What builds on a picture that did not come is left out; decoding keeps nobody waiting.
@@ -561,8 +568,7 @@ class TcpEndpoint : public Endpoint {
   VideoChoice video_choice_;
   std::unique_ptr<VideoEncoder> h264_encoder_;  // null: none
   std::map<PeerId, std::unique_ptr<VideoDecoder>> h264_decoders_;
-  ConnectionId newest_viewer_ = 0;
-  std::uint64_t dropped_seen_ = 0;
+  Viewers chained_for_;  // the last picture in H.264
   BodyPool poses_{kPosesReused}, pictures_{kPicturesReused};
   HostPort address_;
   bool leaving_ = false;

@@ -12,7 +12,8 @@ constexpr double kFilled = 0.8;     // of what a link carries, at most by H.264
 constexpr std::uint32_t kLate = 2;  // pictures that wait
 constexpr int kLateInARow = 10;
 constexpr double kSmoothing = 0.1;  // share of the newest interval
-constexpr double kUsualInterval = 1.0 / 25;
+constexpr int kUsualPerSecond = 25;
+constexpr double kUsualInterval = 1.0 / kUsualPerSecond;
 constexpr std::int64_t kFirstDoubt = 10'000'000'000;
 constexpr std::int64_t kLongestDoubt = 300'000'000'000;
 constexpr std::int64_t kTakesEffect = 1'000'000'000;  // what was queued before a change is still on its way
@@ -27,7 +28,7 @@ constexpr std::array<VideoForm, 6> kWithoutH264{{{PixelCodec::raw_bgr8},
                                                  {PixelCodec::jpeg, 30}}};
 
 constexpr VideoForm h264(std::int64_t bits_per_second) {
-  return {PixelCodec::h264, kJpegQuality, bits_per_second / 25};
+  return {PixelCodec::h264, kJpegQuality, bits_per_second / kUsualPerSecond};
 }
 
 // A camera's pictures of 720x576 at 25 a second need 16 Mbit/s as JPEG of quality 83.

@@ -21,9 +21,7 @@ namespace {
 constexpr int kTicksPerSecond = 90'000;
 
 std::string sentence(const char* what, const std::string& file, int code) {
-  char reason[AV_ERROR_MAX_STRING_SIZE] = {};
-  av_strerror(code, reason, sizeof reason);
-  return std::string("cannot ") + what + " film '" + file + "': " + reason;
+  return std::string("cannot ") + what + " film '" + file + "': " + ffmpeg_reason(code);
 }
 
 class Film final : public Output {
